@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/frames.h"
+
+namespace adit {
+
+/// Measured points in one frame, each with the instant and the laser that measured it. Optional columns may be empty.
+struct PointCloud {
+  std::vector<Vec3> p;                // (n x 3) metres
+  std::vector<double> stamp_s;        // (n) or empty: when the beam left; with the path this gives p in B
+  std::vector<std::uint8_t> laser;    // (n) or empty: index in the rig
+
+  size_t size() const { return p.size(); }
+};
+
+/// Binary little-endian PLY: float x y z, double stamp_s, uchar laser.
+void write_points(const std::string& file, const PointCloud& points);
+/// Any PLY with x, y, z.
+PointCloud read_points(const std::string& file);
+
+}  // namespace adit

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/frames.h"
+#include "base/laser.h"
+
+namespace adit {
+
+/// One laser on a vehicle.
+struct Mount {
+  std::string name;    // unique in the rig
+  LaserModel laser;
+  Pose X_BS = Pose::Identity();
+  double phase_s = 0;  // of its first scan after the recording's start: lasers are not synchronised
+};
+
+/// The lasers of a vehicle. In a log: as a mapper is told; in a truth: as they truly are.
+struct Rig {
+  std::string name;
+  std::vector<Mount> mounts;
+};
+
+/// What a laser looks at, by its scan plane in B.
+enum class View { horizontal, forward_vertical, up, down, other };
+View view_of(const Mount& mount);
+/// Index of the first mount with that view, or -1.
+int find_view(const Rig& rig, View view);
+
+/// A bundled rig by name, or one from a TOML file: tables [[laser]] with name, model, position_m, yaw_deg, pitch_deg, roll_deg.
+Rig load_rig(const std::string& name_or_file, int baud);
+
+}  // namespace adit

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+namespace adit {
+
+/// What a random number is for; part of its address. Append only: the order is part of every seed's meaning.
+enum class Draw : std::uint32_t {
+  test, world_layout, world_wander, world_width, world_roll, world_roughness, world_height, world_material,
+  push_speed, push_stop, push_wobble, push_gait, route, mount_error, laser_phase, laser_jitter, laser_device,
+  beam_range, beam_angle, beam_drop, beam_detect, match_sample, eval_sample, bootstrap,
+};
+
+/// Random numbers have addresses, not an order: the same (seed, draw, i, j) always gives the same number.
+/// Philox 4x32-10 (Salmon et al., SC 2011).
+std::uint64_t random_bits(std::uint64_t seed, Draw draw, std::uint64_t i, std::uint64_t j = 0);
+/// In [0, 1).
+double uniform(std::uint64_t seed, Draw draw, std::uint64_t i, std::uint64_t j = 0);
+/// Mean 0, sd 1 (Box-Muller on one address).
+double normal(std::uint64_t seed, Draw draw, std::uint64_t i, std::uint64_t j = 0);
+
+}  // namespace adit

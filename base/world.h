@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/frames.h"
+#include "base/mesh.h"
+
+namespace adit {
+
+/// Where passages meet or end. Its id is its index in World::junctions.
+struct Junction {
+  Vec3 p_W;             // on the floor
+  std::vector<int> passages;  // ids of those that meet here; one = a dead end
+
+  int degree() const { return static_cast<int>(passages.size()); }
+};
+
+/// A driven way between two junctions. Its id is its index in World::passages.
+struct Passage {
+  int a, b;                       // junction ids
+  std::vector<Vec3> centre_line;  // on the floor, from a to b, both included, about every metre
+  double width_m, height_m;       // means over the passage
+  double length_m;                // along the centre line, in plan
+};
+
+/// Rock encircled by passages. Its id is its index in World::pillars.
+struct Pillar {
+  std::vector<Vec2> outline;  // counter-clockwise, at mid height
+  double area_m2;
+};
+
+/// Exact numbers of a mine.
+struct WorldNumbers {
+  double volume_m3 = 0;         // enclosed void
+  double floor_area_m2 = 0;     // plan area of the void at mid height
+  double extraction_ratio = 0;  // floor area / (floor area + pillar areas)
+  int loops = 0;                // independent cycles of the junction graph
+};
+
+/// A mine with its truth, in W.
+struct World {
+  std::string name;
+  Mesh mesh;
+  std::vector<Junction> junctions;
+  std::vector<Passage> passages;
+  std::vector<Pillar> pillars;
+  WorldNumbers numbers;
+};
+
+/// Ground that a wheel can stand on: the faces labelled floor.
+Mesh floor_of(const World& world);
+/// Hex digest of mesh and numbers; scores are comparable only under the same one.
+std::string world_hash(const World& world);
+
+/// DIR/mine.ply, mine.glb, truth.json.
+void save_world(const std::string& dir, const World& world);
+World load_world(const std::string& dir);
+
+}  // namespace adit

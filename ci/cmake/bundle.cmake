@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Writes OUT: a table of (path, text) of FILES below ROOT. Run by base/CMakeLists.txt.
+set(text "#include <string_view>\n#include <utility>\nnamespace adit {\nextern const std::pair<std::string_view, std::string_view> bundled_data[];\nextern const int bundled_count;\nconst std::pair<std::string_view, std::string_view> bundled_data[] = {\n")
+set(count 0)
+foreach(file ${FILES})
+  file(READ ${ROOT}/${file} hex HEX)
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "\\\\x\\1" escaped "${hex}")
+  # Literals of at most 8 kB, joined by the compiler.
+  string(LENGTH "${escaped}" length)
+  set(literal "")
+  set(at 0)
+  while(at LESS length)
+    string(SUBSTRING "${escaped}" ${at} 8000 piece)
+    string(APPEND literal "\n    \"${piece}\"")
+    math(EXPR at "${at} + 8000")
+  endwhile()
+  string(LENGTH "${hex}" hex_length)
+  math(EXPR bytes "${hex_length} / 2")
+  string(APPEND text "  {\"${file}\", std::string_view(${literal}, ${bytes})},\n")
+  math(EXPR count "${count} + 1")
+endforeach()
+string(APPEND text "};\nconst int bundled_count = ${count};\n}  // namespace adit\n")
+file(WRITE ${OUT} "${text}")

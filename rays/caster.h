@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "base/frames.h"
+#include "base/mesh.h"
+
+namespace adit {
+
+struct Ray {
+  Vec3 origin, direction;  // direction of unit length
+  double far_m = 1e4;
+};
+
+struct Hit {
+  double range_m;           // +inf: nothing met
+  std::int32_t face = -1;   // of the mesh, -1: nothing met
+};
+
+struct Closest {
+  Vec3 point;
+  std::int32_t face;
+  double distance_m;
+};
+
+/// Asks a mesh what a ray meets first and what surface is nearest. Safe to ask from many threads; the same bits on any number
+/// of them. The sole owner of Embree, its instruction set pinned.
+class Caster {
+ public:
+  explicit Caster(const Mesh& mesh);
+  ~Caster();
+  Caster(Caster&&) noexcept;
+  Caster& operator=(Caster&&) noexcept;
+
+  const Mesh& mesh() const;
+  Hit nearest(const Ray& ray) const;
+  /// hits[i] belongs to rays[i]. Fastest where neighbours in the span are neighbours in space (beams of one fan in order).
+  void nearest(std::span<const Ray> rays, std::span<Hit> hits) const;
+  /// Nearest point of the surface within radius_m. With `seen_along` only faces that a beam in that direction can meet from
+  /// within the enclosed volume count (normal . seen_along > 0), so that a thin wall does not lend its far face.
+  std::optional<Closest> closest(const Vec3& p, double radius_m, const std::optional<Vec3>& seen_along = {}) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace adit
