@@ -31,12 +31,14 @@ struct Closest {
 /// of them. The sole owner of Embree, its instruction set pinned.
 class Caster {
  public:
+  /// The mesh must outlive the caster. Error for a mesh without faces, or a processor without AVX2.
   explicit Caster(const Mesh& mesh);
   ~Caster();
   Caster(Caster&&) noexcept;
   Caster& operator=(Caster&&) noexcept;
 
   const Mesh& mesh() const;
+  /// Exact: the face is found in floats, the range to its plane computed in doubles.
   Hit nearest(const Ray& ray) const;
   /// hits[i] belongs to rays[i]. Fastest where neighbours in the span are neighbours in space (beams of one fan in order).
   void nearest(std::span<const Ray> rays, std::span<Hit> hits) const;
