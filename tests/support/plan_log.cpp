@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/plan_log.h"
 
+#include "base/parallel.h"
+#include "base/rng.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include "base/parallel.h"
-#include "base/rng.h"
 
 namespace adit {
 namespace {
@@ -62,8 +62,10 @@ Field field_along(const std::vector<Segment>& lines, const PlanShape& shape, std
   for (const Segment& s : lines) box.add(s.a), box.add(s.b);
   const double reach = shape.width_m / 2 + 1;
   const Vec2 size = box.high - box.low + Vec2::Constant(2 * (reach + margin_m));
-  Field f{box.low - Vec2::Constant(reach + margin_m), static_cast<int>(size.x() / lattice_m) + 1,
-          static_cast<int>(size.y() / lattice_m) + 1, {}};
+  Field f{box.low - Vec2::Constant(reach + margin_m),
+          static_cast<int>(size.x() / lattice_m) + 1,
+          static_cast<int>(size.y() / lattice_m) + 1,
+          {}};
   f.value.assign(static_cast<size_t>(f.width) * f.height, 1.0);
   for (const Segment& s : lines) {
     Box2 near;
@@ -179,7 +181,8 @@ class Path {
  private:
   Vec2 on_line(double s_m) const {
     const double s = std::clamp(s_m, 0.0, along_.back());
-    const size_t hi = std::clamp<size_t>(std::lower_bound(along_.begin(), along_.end(), s) - along_.begin(), 1, at_.size() - 1);
+    const size_t hi =
+        std::clamp<size_t>(std::lower_bound(along_.begin(), along_.end(), s) - along_.begin(), 1, at_.size() - 1);
     const Vec2 step = at_[hi] - at_[hi - 1];
     return at_[hi - 1] + step * (s - along_[hi - 1]) / (along_[hi] - along_[hi - 1]) + step.normalized() * (s_m - s);
   }
@@ -215,7 +218,8 @@ Plan plan_along(const std::vector<Segment>& centre_lines, const PlanShape& shape
       const std::array<double, 4> v{f.at(i, j), f.at(i + 1, j), f.at(i + 1, j + 1), f.at(i, j + 1)};
       std::vector<Vec2> cut;
       for (int k = 0; k < 4; ++k)
-        if ((v[k] < 0) != (v[(k + 1) % 4] < 0)) cut.push_back(p[k] + (p[(k + 1) % 4] - p[k]) * v[k] / (v[k] - v[(k + 1) % 4]));
+        if ((v[k] < 0) != (v[(k + 1) % 4] < 0))
+          cut.push_back(p[k] + (p[(k + 1) % 4] - p[k]) * v[k] / (v[k] - v[(k + 1) % 4]));
       for (size_t k = 0; k + 1 < cut.size(); k += 2) plan.ribs.push_back({cut[k], cut[k + 1]});
     }
   return plan;
@@ -223,8 +227,10 @@ Plan plan_along(const std::vector<Segment>& centre_lines, const PlanShape& shape
 
 std::vector<Segment> panel_lines(int entries, int crosscuts, double pitch_m) {
   std::vector<Segment> lines;
-  for (int k = 0; k < entries; ++k) lines.push_back({Vec2(0, k * pitch_m), Vec2((crosscuts - 1) * pitch_m, k * pitch_m)});
-  for (int k = 0; k < crosscuts; ++k) lines.push_back({Vec2(k * pitch_m, 0), Vec2(k * pitch_m, (entries - 1) * pitch_m)});
+  for (int k = 0; k < entries; ++k)
+    lines.push_back({Vec2(0, k * pitch_m), Vec2((crosscuts - 1) * pitch_m, k * pitch_m)});
+  for (int k = 0; k < crosscuts; ++k)
+    lines.push_back({Vec2(k * pitch_m, 0), Vec2(k * pitch_m, (entries - 1) * pitch_m)});
   return lines;
 }
 
@@ -257,25 +263,28 @@ PlanLog drive_plan(const Plan& plan, const std::vector<Vec2>& line, const TourSe
     log.X_WB.push_back(X_WB(t));
   }
   log.scans.range_m.resize(log.scans.size() * s.beams);
-  parallel_for(log.scans.size(), [&](size_t i) {
-    for (int k = 0; k < s.beams; ++k) {
-      const double offset_s = s.moving_beams ? log.mount.laser.beam_offset_s(k) : 0;
-      const Pose2 X_WS = X_WB(log.scans.stamp_s[i] + offset_s) * X_BS;
-      double r = ribs.cast(X_WS.position(), X_WS.yaw_rad + log.mount.laser.beam_angle_rad(k));
-      r += s.noise_m * normal(seed, Draw::beam_range, i, k);
-      if (r > log.mount.laser.range_max_m) r = inf;
-      if (uniform(seed, Draw::beam_drop, i, k) < s.drop_share) r = std::numeric_limits<double>::quiet_NaN();
-      log.scans.range_m[i * s.beams + k] = static_cast<float>(r);
-    }
-  }, 16);
+  parallel_for(
+      log.scans.size(),
+      [&](size_t i) {
+        for (int k = 0; k < s.beams; ++k) {
+          const double offset_s = s.moving_beams ? log.mount.laser.beam_offset_s(k) : 0;
+          const Pose2 X_WS = X_WB(log.scans.stamp_s[i] + offset_s) * X_BS;
+          double r = ribs.cast(X_WS.position(), X_WS.yaw_rad + log.mount.laser.beam_angle_rad(k));
+          r += s.noise_m * normal(seed, Draw::beam_range, i, k);
+          if (r > log.mount.laser.range_max_m) r = inf;
+          if (uniform(seed, Draw::beam_drop, i, k) < s.drop_share) r = std::numeric_limits<double>::quiet_NaN();
+          log.scans.range_m[i * s.beams + k] = static_cast<float>(r);
+        }
+      },
+      16);
   return log;
 }
 
 PlanLog loop_tour(const PlanShape& shape, const TourSettings& settings, std::uint64_t seed) {
   const double d = 18;
   const Plan plan = plan_along(panel_lines(3, 3, d), shape, seed);
-  const std::vector<Vec2> line{{2, 0},  {2 * d, 0}, {2 * d, d}, {0, d}, {0, 0},         {d, 0},    {d, 2 * d},
-                               {0, 2 * d}, {0, d},  {2 * d, d}, {2 * d, 2 * d}, {d, 2 * d}, {d, 2}};
+  const std::vector<Vec2> line{{2, 0},     {2 * d, 0}, {2 * d, d}, {0, d},         {0, 0},     {d, 0}, {d, 2 * d},
+                               {0, 2 * d}, {0, d},     {2 * d, d}, {2 * d, 2 * d}, {d, 2 * d}, {d, 2}};
   return drive_plan(plan, line, settings, seed);
 }
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// A mine in the plane and what a horizontal laser records on a tour of it, with the exact truth: enough to test everything
-// that works on planar scans, in milliseconds and with no mesh.
-
-#include <cstdint>
-#include <vector>
+// A mine in the plane and what a horizontal laser records on a tour of it, with the exact truth: enough to test
+// everything that works on planar scans, in milliseconds and with no mesh.
 
 #include "base/frames.h"
 #include "base/recording.h"
 #include "base/rig.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace adit {
 
@@ -31,7 +31,8 @@ struct PlanShape {
 /// The ribs around centre lines: where the distance to the nearest line is width / 2 plus the roughness.
 Plan plan_along(const std::vector<Segment>& centre_lines, const PlanShape& shape, std::uint64_t seed);
 
-/// Centre lines of a room-and-pillar panel: entries along x at y = 0, pitch, ...; crosscuts along y at x = 0, pitch, ...
+/// Centre lines of a room-and-pillar panel: entries along x at y = 0, pitch, ...; crosscuts along y at x = 0, pitch,
+/// ...
 std::vector<Segment> panel_lines(int entries, int crosscuts, double pitch_m);
 
 /// A tour of `line` (corners are rounded), pushed at a walking speed that varies, with scans taken on the way.
@@ -40,11 +41,11 @@ struct TourSettings {
   double sway_m = 0.08;                       // from the line to either side, wave length about 7 m
   double corner_m = 1.8;                      // where a corner begins to be rounded
   double noise_m = 0.01;
-  double stop_at_m = -1, stop_s = 0;          // stands here for so long
-  double drop_share = 0.01;                   // of the beams, that come back as NaN
+  double stop_at_m = -1, stop_s = 0;  // stands here for so long
+  double drop_share = 0.01;           // of the beams, that come back as NaN
   int beams = 361;
   double interval_s = 0.2131;
-  bool moving_beams = true;                   // each beam from where the laser is when it leaves
+  bool moving_beams = true;  // each beam from where the laser is when it leaves
 };
 
 struct PlanLog {
