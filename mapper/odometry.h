@@ -1,23 +1,60 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
-#include <vector>
-
 #include "base/config.h"
 #include "base/estimate.h"
 #include "base/progress.h"
 #include "base/recording.h"
+#include "mapper/match.h"
+#include "mapper/scan_points.h"
+
+#include <Eigen/Core>
+
+#include <vector>
 
 namespace adit {
 
 /// Motion from the scans of one horizontal laser alone.
 struct Odometry {
-  std::vector<double> stamp_s;                // (n) one per scan
-  std::vector<Pose2> X_MB;                    // (n) chained steps, first = identity
-  std::vector<Pose2> X_step;                  // (n) X_step[i] = pose of body i in body i-1; [0] unused, identity
-  std::vector<Eigen::Matrix3d> information;   // (n) of X_step, about frame B_i: of the error e in X_true = X_step * (ex, ey, eyaw)
+  std::vector<double> stamp_s;  // (n) one per scan
+  std::vector<Pose2> X_MB;      // (n) chained steps, first = identity
+  std::vector<Pose2> X_step;    // (n) X_step[i] = pose of body i in body i-1; [0] unused, identity
+  std::vector<Eigen::Matrix3d>
+      information;  // (n) of X_step, about frame B_i: of the error e in X_true = X_step * (ex, ey, eyaw)
   std::vector<DegenerateStretch> degenerate;
+  int lost = 0;  // scans that no match could place: their step is the prediction
 };
+
+struct OdometrySettings {
+  ScanPointSettings points;
+  MatchSettings match;
+  int key_scans = 20;       // of the past that make the local map
+  double key_step_m = 0.4;  // a scan this far from the last key scan is a new one
+  double key_step_deg = 10;
+  double speed_change_m_s2 = 0.5;  // 1 sd of the change of speed, for the prediction
+  double turn_change_deg_s2 = 40;
+  double search_m = 0.6;  // half width of the search when the refiner fails
+  double search_deg = 25;
+  double most_speed_m_s = 3;  // a faster match is a wrong one
+};
+Fields fields(OdometrySettings& s);
+
+/// Motion of the body from one horizontal laser's scans alone: each scan is matched to a map of recent key scans from a
+/// prediction of constant speed, with a correlative search where that fails. Where the ribs leave a direction open the
+/// prediction is kept in it and the stretch is reported with the sigma to which it has grown.
+/// @param scans at least one; a scan without a single rib point moves as predicted and counts as lost
+Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings,
+                         const Progress& progress = {});
+
+/// Places every scan once more, each against the scans that lie near it in space at the aligned poses, with those poses
+/// as a quadratic prior (algorithm section III-C of Thrun et al. 2003). Parallel; what cannot be matched keeps its
+/// pose.
+struct RematchSettings {
+  double prior_sigma_m = 0.05, prior_sigma_deg = 0.5;  // of an aligned pose
+  int neighbours = 20;                                 // most key scans that make the map around a scan
+  double reach_m = 5;                                  // they lie within
+};
+std::vector<Pose2> rematch(const std::vector<ScanPoints>& scans, const std::vector<Pose2>& X_MB,
+                           const RematchSettings& settings, const MatchSettings& match, const Progress& progress = {});
 
 }  // namespace adit

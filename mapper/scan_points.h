@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/config.h"
+#include "base/recording.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace adit {
+
+/// What of a horizontal scan is taken for ribs, and how their directions are fitted.
+struct ScanPointSettings {
+  double range_min_m = 0.3;
+  double range_max_m = 14;  // on pitching ground a horizontal beam meets floor or roof beyond
+  double fit_half_m = 0.6;  // longest reach of a line fit to either side of a point
+  double fit_sigmas = 1.6;  // a fit is taken while its rms residual is below so many sigma
+  double graze_deg = 4;     // beams that meet a rib more flatly than this do not join it
+};
+Fields fields(ScanPointSettings& s);
+
+/// The ribs that one scan saw, in B at the scan's stamp, in the order of the beams. Only points that lie on a line of
+/// neighbouring beams: no-echo, drop-outs and mixed pixels (a beam half on either side of an edge) are left out.
+struct ScanPoints {
+  std::vector<Vec2> p_B;       // (n)
+  std::vector<Vec2> normal_B;  // (n) unit, towards the laser
+  std::vector<double>
+      sigma_m;  // (n) of the point along its normal, 1 sd: laser noise and what the line does not explain
+  std::vector<double> sigma_normal_rad;  // (n) of the normal's direction, 1 sd, by laser noise alone
+  std::vector<std::int32_t> beam;        // (n)
+
+  size_t size() const { return p_B.size(); }
+};
+
+/// Motion of the body while a scan is taken: constant speed in B, per second.
+struct Twist2 {
+  double x_m_s = 0, y_m_s = 0, yaw_rad_s = 0;
+};
+
+/// The motion that takes dt_s from identity to X.
+Twist2 twist_of(const Pose2& X, double dt_s);
+/// Pose after dt_s of that motion (first order in the turn: x and y are those of constant speed along an arc).
+Pose2 pose_after(const Twist2& twist, double dt_s);
+
+/// Points of one scan, each beam taken back to the stamp by the motion. @param range_m one scan of `mount`.
+ScanPoints scan_points(std::span<const float> range_m, const Mount& mount, const Twist2& twist,
+                       const ScanPointSettings& settings);
+
+/// All scans, undone by the motion that the poses X_MB (one a scan) tell. Parallel.
+std::vector<ScanPoints> scan_points(const Scans& scans, const Mount& mount, const std::vector<Pose2>& X_MB,
+                                    const ScanPointSettings& settings = {});
+/// The motion at each scan as told by poses: from the scan before to the scan after, the ends one-sided. (n)
+std::vector<Twist2> twists_of(const std::vector<double>& stamp_s, const std::vector<Pose2>& X_MB);
+
+}  // namespace adit
