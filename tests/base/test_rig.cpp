@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/rig.h"
+
+namespace adit {
+namespace {
+
+TEST(Laser, Lms200FiresAHalfDegreeScanInTwoTurnsAndTheLinkThinsIt) {
+  const LaserModel m = load_laser("lms200", 38400);
+  EXPECT_EQ(m.beams, 361);
+  EXPECT_NEAR(m.beam_angle_rad(180), 0, 1e-12);
+  EXPECT_NEAR(m.beam_offset_s(1) - m.beam_offset_s(0), 0.01332 + 0.01332 / 720, 1e-9);  // the next turn, half a degree on
+  EXPECT_NEAR(m.beam_offset_s(360), 0.00666, 1e-9);
+  EXPECT_NEAR(1 / m.interval_s, 4.17, 0.01);  // SICK telegram listing: 8 of 9 scans are skipped
+  EXPECT_NEAR(load_laser("lms200", 500000).interval_s, 0.02664, 1e-9);
+  EXPECT_THROW(load_laser("lms200", 4800), Error);
+}
+
+TEST(Rig, Cart4HasOneLaserForEachView) {
+  const Rig rig = load_rig("cart4", 38400);
+  for (View v : {View::horizontal, View::forward_vertical, View::up, View::down}) EXPECT_GE(find_view(rig, v), 0);
+}
+
+TEST(Rig, ABadRigIsAnsweredWithFileLineAndKey) {
+  const std::string file = ::testing::TempDir() + "adit_rig.toml";
+  const auto error_of = [&](const std::string& text) -> std::string {
+    write_text(file, text);
+    try {
+      load_rig(file, 0);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(error_of("[[laser]]\nname = 'a'\npitch_degs = 3\n"), ::testing::HasSubstr("adit_rig.toml:3: unknown key 'pitch_degs' (did you mean 'pitch_deg'?)"));
+  EXPECT_THAT(error_of("[[laser]]\nname='a'\nmodel='lms99'\n"), ::testing::HasSubstr("lms99"));
+  EXPECT_THAT(error_of("name='x'\n"), ::testing::HasSubstr("no [[laser]]"));
+  EXPECT_THAT(error_of("[[laser]]\nname='a'\n[[laser]]\nname='a'\n"), ::testing::HasSubstr("a second time"));
+  EXPECT_THAT(error_of("[[laser]]\nname='a'\nposition_m=[1, 2]\n"), ::testing::HasSubstr("three numbers"));
+}
+
+}  // namespace
+}  // namespace adit

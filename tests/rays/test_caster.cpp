@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "base/rng.h"
+#include "rays/caster.h"
+#include "tests/support/shapes.h"
+
+namespace adit {
+namespace {
+
+Vec3 any_direction(int i) {
+  return Vec3(normal(5, Draw::test, i, 0), normal(5, Draw::test, i, 1), normal(5, Draw::test, i, 2)).normalized();
+}
+
+TEST(Caster, RangesInABoxAreThoseOfArithmetic) {
+  const Mesh box = box_mesh({-2, -3, 0}, {4, 5, 2});
+  const Caster caster(box);
+  const Vec3 o(1, 1, 1), half(3, 4, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 d = any_direction(i);
+    const double expected = (half.array() / d.array().abs()).minCoeff();
+    EXPECT_NEAR(caster.nearest({o, d}).range_m, expected, 1e-12 * (1 + expected)) << "i = " << i;  // planes in doubles
+  }
+}
+
+TEST(Caster, PacketsAnswerAsSingleRays) {
+  const Mesh mesh = fine_box_mesh({0, 0, 0}, {30, 5, 2}, 0.3);
+  const Caster caster(mesh);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 1003; ++i) rays.push_back({Vec3(10, 2, 1), any_direction(i)});
+  std::vector<Hit> hits(rays.size());
+  caster.nearest(rays, hits);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Hit one = caster.nearest(rays[i]);
+    EXPECT_EQ(hits[i].range_m, one.range_m);
+    EXPECT_EQ(hits[i].face, one.face);
+  }
+}
+
+TEST(Caster, NothingWithinReachIsInfinity) {
+  const Mesh box = box_mesh({0, 0, 0}, {10, 10, 10});
+  const Caster caster(box);
+  EXPECT_TRUE(std::isinf(caster.nearest({Vec3(5, 5, 5), Vec3::UnitX(), 4.9}).range_m));
+  EXPECT_FALSE(caster.closest(Vec3(5, 5, 5), 4.9).has_value());
+}
+
+TEST(Caster, TheClosestPointOfASphereLiesOnTheRadius) {
+  const Mesh sphere = sphere_mesh({100, 50, 2}, 2, 5);
+  const Caster caster(sphere);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 d = any_direction(i);
+    const auto c = caster.closest(Vec3(100, 50, 2) + 1.5 * d, 5);
+    ASSERT_TRUE(c.has_value());
+    // 20 * 4^5 faces with edges up to 0.082 m: their middles lie (0.082 / sqrt 3)^2 / (2 * 2) = 0.56 mm inside.
+    EXPECT_NEAR(c->distance_m, 0.5, 5.7e-4);
+  }
+}
+
+TEST(Caster, ClosestEqualsTheBestOfAllFaces) {
+  const Mesh mesh = fine_box_mesh({0, 0, 0}, {6, 5, 2}, 0.5);
+  const Caster caster(mesh);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 p(6 * uniform(6, Draw::test, i, 0), 5 * uniform(6, Draw::test, i, 1), 2 * uniform(6, Draw::test, i, 2));
+    const double expected = std::min({p.x(), 6 - p.x(), p.y(), 5 - p.y(), p.z(), 2 - p.z()});
+    EXPECT_NEAR(caster.closest(p, 10)->distance_m, expected, 1e-12);
+  }
+}
+
+TEST(Caster, AThinWallDoesNotLendItsFarFace) {
+  // Two rooms with 0.1 m of rock between; a point measured from the left room and 6 cm too far lies nearer to the right one.
+  Mesh mesh = box_mesh({0, 0, 0}, {5, 4, 2});
+  const Mesh right = box_mesh({5.1, 0, 0}, {9, 4, 2});
+  for (auto f : right.face) mesh.face.push_back({f[0] + 8, f[1] + 8, f[2] + 8});
+  mesh.vertex.insert(mesh.vertex.end(), right.vertex.begin(), right.vertex.end());
+  const Caster caster(mesh);
+  const Vec3 p(5.06, 2, 1);
+  EXPECT_NEAR(caster.closest(p, 1)->distance_m, 0.04, 1e-9);
+  EXPECT_NEAR(caster.closest(p, 1, Vec3::UnitX())->distance_m, 0.06, 1e-9);
+}
+
+}  // namespace
+}  // namespace adit
