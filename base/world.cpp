@@ -1,1 +1,229 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/world.h"
+
+#include "base/error.h"
+#include "base/files.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <cstring>
+#include <map>
+
+namespace adit {
+namespace {
+
+using nlohmann::json;
+
+// Reads 8 bytes at a time; each word is stirred as in splitmix64 (Steele, Lea, Flood, OOPSLA 2014).
+class Digest {
+ public:
+  void add(std::uint64_t word) {
+    std::uint64_t x = state_ ^ word;
+    x += 0x9E3779B97F4A7C15;
+    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9;
+    x = (x ^ (x >> 27)) * 0x94D049BB133111EB;
+    state_ = x ^ (x >> 31);
+  }
+  void add(double v) {
+    std::uint64_t word;
+    std::memcpy(&word, &v, sizeof word);
+    add(word);
+  }
+  std::string hex() const {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(state_));
+    return text;
+  }
+
+ private:
+  std::uint64_t state_ = 0x61646974;
+};
+
+json array_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+json array_of(const Vec2& v) {
+  return {v.x(), v.y()};
+}
+template <class V>
+json array_of(const std::vector<V>& vectors) {
+  json a = json::array();
+  for (const V& v : vectors) a.push_back(array_of(v));
+  return a;
+}
+
+Vec3 vec3_of(const json& j) {
+  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
+}
+Vec2 vec2_of(const json& j) {
+  return {j.at(0).get<double>(), j.at(1).get<double>()};
+}
+
+std::vector<json> junctions_of(const World& world) {
+  std::vector<json> all;
+  for (size_t i = 0; i < world.junctions.size(); ++i)
+    all.push_back({{"id", i}, {"p_W", array_of(world.junctions[i].p_W)}, {"passages", world.junctions[i].passages}});
+  return all;
+}
+
+std::vector<json> passages_of(const World& world) {
+  std::vector<json> all;
+  for (size_t i = 0; i < world.passages.size(); ++i) {
+    const Passage& p = world.passages[i];
+    all.push_back({{"id", i},
+                   {"a", p.a},
+                   {"b", p.b},
+                   {"width_m", p.width_m},
+                   {"height_m", p.height_m},
+                   {"length_m", p.length_m},
+                   {"centre_line", array_of(p.centre_line)}});
+  }
+  return all;
+}
+
+std::vector<json> pillars_of(const World& world) {
+  std::vector<json> all;
+  for (size_t i = 0; i < world.pillars.size(); ++i)
+    all.push_back({{"id", i}, {"area_m2", world.pillars[i].area_m2}, {"outline", array_of(world.pillars[i].outline)}});
+  return all;
+}
+
+// Area and mean reflectivity of the faces of each label.
+json materials_of(const Mesh& mesh) {
+  std::map<Label, std::pair<double, double>> sums;
+  for (size_t f = 0; f < mesh.label.size(); ++f) {
+    auto& [area, reflected] = sums[mesh.label[f]];
+    area += mesh.area(f);
+    if (!mesh.reflectivity.empty()) reflected += mesh.area(f) * mesh.reflectivity[f];
+  }
+  json all = json::object();
+  for (const auto& [label, sum] : sums) {
+    json& m = all[label_name(label)];
+    m["area_m2"] = sum.first;
+    if (!mesh.reflectivity.empty() && sum.first > 0) m["reflectivity_905nm"] = sum.second / sum.first;
+  }
+  return all;
+}
+
+// A list with one entry a line: readable, and small beside a full indentation.
+std::string lines(const std::vector<json>& entries) {
+  std::string text = "[";
+  for (size_t i = 0; i < entries.size(); ++i) text += (i ? ",\n    " : "\n    ") + entries[i].dump();
+  return text + (entries.empty() ? "]" : "\n  ]");
+}
+
+std::string truth_text(const World& world) {
+  const WorldNumbers& n = world.numbers;
+  const std::vector<std::pair<std::string, std::string>> items = {
+      {"name", json(world.name).dump()},
+      {"volume_m3", json(n.volume_m3).dump()},
+      {"floor_area_m2", json(n.floor_area_m2).dump()},
+      {"extraction_ratio", json(n.extraction_ratio).dump()},
+      {"loops", json(n.loops).dump()},
+      {"labels", json(label_ids()).dump()},
+      {"materials", materials_of(world.mesh).dump()},
+      {"junctions", lines(junctions_of(world))},
+      {"passages", lines(passages_of(world))},
+      {"pillars", lines(pillars_of(world))},
+  };
+  std::string text = "{";
+  for (size_t i = 0; i < items.size(); ++i)
+    text += (i ? ",\n  \"" : "\n  \"") + items[i].first + "\": " + items[i].second;
+  return text + "\n}\n";
+}
+
+Passage passage_of(const json& j) {
+  Passage p{j.at("a").get<int>(),          j.at("b").get<int>(),           {},
+            j.at("width_m").get<double>(), j.at("height_m").get<double>(), j.at("length_m").get<double>()};
+  for (const json& v : j.at("centre_line")) p.centre_line.push_back(vec3_of(v));
+  return p;
+}
+
+Pillar pillar_of(const json& j) {
+  Pillar p{{}, j.at("area_m2").get<double>()};
+  for (const json& v : j.at("outline")) p.outline.push_back(vec2_of(v));
+  return p;
+}
+
+void read_truth(const json& j, World& world) {
+  world.name = j.at("name").get<std::string>();
+  world.numbers = {j.at("volume_m3").get<double>(), j.at("floor_area_m2").get<double>(),
+                   j.at("extraction_ratio").get<double>(), j.at("loops").get<int>()};
+  for (const json& v : j.at("junctions"))
+    world.junctions.push_back({vec3_of(v.at("p_W")), v.at("passages").get<std::vector<int>>()});
+  for (const json& v : j.at("passages")) world.passages.push_back(passage_of(v));
+  for (const json& v : j.at("pillars")) world.pillars.push_back(pillar_of(v));
+}
+
+void check_graph(const std::string& file, const World& world) {
+  const int junctions = static_cast<int>(world.junctions.size()), passages = static_cast<int>(world.passages.size());
+  for (const Passage& p : world.passages)
+    if (std::min(p.a, p.b) < 0 || std::max(p.a, p.b) >= junctions || p.centre_line.size() < 2)
+      throw Error(file + ": a passage names a junction that is not there, or has no centre line");
+  for (const Junction& j : world.junctions)
+    for (int id : j.passages)
+      if (id < 0 || id >= passages)
+        throw Error(file + ": a junction names passage " + std::to_string(id) + ", which is not there");
+}
+
+}  // namespace
+
+Mesh floor_of(const World& world) {
+  const Mesh& mesh = world.mesh;
+  Mesh floor;
+  std::vector<std::int64_t> new_index(mesh.vertex.size(), -1);
+  for (size_t f = 0; f < mesh.face.size(); ++f) {
+    if (mesh.label.size() <= f || mesh.label[f] != Label::floor) continue;
+    std::array<std::uint32_t, 3> face;
+    for (int k = 0; k < 3; ++k) {
+      std::int64_t& index = new_index[mesh.face[f][k]];
+      if (index < 0) {
+        index = static_cast<std::int64_t>(floor.vertex.size());
+        floor.vertex.push_back(mesh.corner(f, k));
+      }
+      face[k] = static_cast<std::uint32_t>(index);
+    }
+    floor.face.push_back(face);
+    floor.label.push_back(Label::floor);
+    if (!mesh.part.empty()) floor.part.push_back(mesh.part[f]);
+    if (!mesh.reflectivity.empty()) floor.reflectivity.push_back(mesh.reflectivity[f]);
+  }
+  return floor;
+}
+
+std::string world_hash(const World& world) {
+  Digest digest;
+  for (const Vec3& v : world.mesh.vertex)
+    for (int k = 0; k < 3; ++k) digest.add(v[k]);
+  for (const auto& f : world.mesh.face)
+    for (std::uint32_t v : f) digest.add(std::uint64_t{v});
+  for (Label l : world.mesh.label) digest.add(static_cast<std::uint64_t>(l));
+  for (int p : world.mesh.part) digest.add(static_cast<std::uint64_t>(static_cast<std::int64_t>(p)));
+  for (float r : world.mesh.reflectivity) digest.add(static_cast<double>(r));
+  const WorldNumbers& n = world.numbers;
+  for (double v : {n.volume_m3, n.floor_area_m2, n.extraction_ratio}) digest.add(v);
+  digest.add(static_cast<std::uint64_t>(n.loops));
+  return digest.hex();
+}
+
+void save_world(const std::string& dir, const World& world) {
+  write_mesh(dir + "/mine.ply", world.mesh);
+  write_glb(dir + "/mine.glb", world.mesh);
+  write_text(dir + "/truth.json", truth_text(world));
+}
+
+World load_world(const std::string& dir) {
+  const std::string file = dir + "/truth.json";
+  World world;
+  try {
+    read_truth(json::parse(read_text(file)), world);
+  } catch (const json::exception& e) {
+    throw Error(file + ": not a world's truth: " + e.what());
+  }
+  check_graph(file, world);
+  world.mesh = read_mesh(dir + "/mine.ply");
+  return world;
+}
+
+}  // namespace adit
