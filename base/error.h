@@ -7,7 +7,7 @@
 namespace adit {
 
 /// What kind of failure an Error is; the value is the exit code of the command.
-enum class Fault { bad_input = 2, not_comparable = 3, file = 74 };
+enum class Fault { bad_input = 2, not_comparable = 3, bug = 70, file = 74 };
 
 /// Thrown where an input cannot be used. The text names the culprit (file, line, key, value) and what would be right.
 class Error : public std::runtime_error {

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "cli/commands.h"
+
+namespace {
+
+// What the command line said.
+struct Words {
+  adit::Common common;
+  bool quiet = false, json = false;
+  int threads = 0;
+  std::string first, second, world, truth, map, check;
+  std::vector<std::string> outs;
+};
+
+void add_common(CLI::App* command, Words& w, bool seeds) {
+  command->add_option("-o,--out", w.common.out, "where the results go");
+  if (seeds) command->add_option("--seed", w.common.seed, "of all chance")->check(CLI::Range(0, 2147483647));
+  command->add_option("--set", w.common.assignments, "key=value of the scenario, may be repeated")->take_all();
+  command->add_option("--threads", w.threads, "0 = all cores")->check(CLI::Range(0, 1024));
+  command->add_flag("--quiet", w.quiet, "say nothing but errors");
+  command->add_flag("--json", w.json, "one JSON object on stdout, nothing else there");
+}
+
+int dispatch(CLI::App& app, const Words& w) {
+  using namespace adit;
+  Console console(w.quiet, w.json);
+  set_threads(w.threads);
+  if (app.got_subcommand("run")) return run_command(w.first, w.common, console);
+  if (app.got_subcommand("world"))
+    return w.check.empty() ? world_command(w.first, w.common, console) : check_command(w.check, console);
+  if (app.got_subcommand("drive")) return drive_command(w.first, w.world, w.common, console);
+  if (app.got_subcommand("map")) return map_command(w.first, w.common, console);
+  if (app.got_subcommand("score")) return score_command(w.world, w.truth, w.map, w.common, console);
+  if (app.got_subcommand("report")) return report_command(w.outs, w.common, console);
+  if (app.got_subcommand("render")) return render_command(w.first, w.second, w.common, console);
+  if (app.got_subcommand("list")) return list_command(w.first, console);
+  return help_command(w.first, console);
+}
+
+void add_commands(CLI::App& app, Words& w) {
+  CLI::App* run = app.add_subcommand("run", "the whole job: world, drive, map, score, report");
+  run->add_option("scenario", w.first, "bundled name or TOML file")->required();
+  add_common(run, w, true);
+  CLI::App* world = app.add_subcommand("world", "a mine alone, or the check of a mesh");
+  CLI::Option* scenario = world->add_option("scenario", w.first, "bundled name or TOML file");
+  CLI::Option* check = world->add_option("--check", w.check, "verify this PLY mesh: closed, oriented, labelled, not self-crossing");
+  check->excludes(scenario);
+  add_common(world, w, true);
+  CLI::App* drive = app.add_subcommand("drive", "a recording, in a mine that is made or given");
+  drive->add_option("scenario", w.first, "bundled name or TOML file")->required();
+  drive->add_option("--world", w.world, "folder of a mine made before");
+  add_common(drive, w, true);
+  CLI::App* map = app.add_subcommand("map", "a map from a recording alone");
+  map->add_option("recording", w.first, "log.h5")->required();
+  add_common(map, w, false);
+  CLI::App* score = app.add_subcommand("score", "a map against the truth");
+  score->add_option("--world", w.world, "folder of the mine")->required();
+  score->add_option("--truth", w.truth, "truth.h5 of the recording")->required();
+  score->add_option("--map", w.map, "folder of the map")->required();
+  add_common(score, w, false);
+  CLI::App* report = app.add_subcommand("report", "the page of one or more run folders");
+  report->add_option("out", w.outs, "folders of runs")->required();
+  add_common(report, w, false);
+  CLI::App* render = app.add_subcommand("render", "one picture of a run");
+  render->add_option("run", w.first, "folder of a run")->required();
+  render->add_option("view", w.second, "one of 'adit list views'")->required();
+  add_common(render, w, false);
+  CLI::App* list = app.add_subcommand("list", "what is bundled");
+  list->add_option("what", w.first, "scenarios, vehicles, rigs, lasers or views");
+  add_common(list, w, false);
+  CLI::App* help = app.add_subcommand("help", "this text, or a topic");
+  help->add_option("topic", w.first, "scenario");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("adit: test underground laser mapping before anyone goes underground", "adit");
+  app.set_version_flag("--version", "adit " ADIT_VERSION);
+  app.require_subcommand(1);
+  Words words;
+  add_commands(app, words);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  try {
+    if (app.got_subcommand("help") && words.first.empty()) {
+      std::printf("%s", app.help().c_str());
+      return 0;
+    }
+    return dispatch(app, words);
+  } catch (const adit::Error& e) {
+    std::fprintf(stderr, "adit: %s\n", e.what());
+    return static_cast<int>(e.fault());
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "adit: out of memory\n");
+    return static_cast<int>(adit::Fault::file);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "adit: internal error: %s; please report it\n", e.what());
+    return static_cast<int>(adit::Fault::bug);
+  }
+}

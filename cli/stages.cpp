@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/stages.h"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/files.h"
+
+namespace adit {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Linux keeps the peak of the resident memory and starts it anew on request (proc(5), clear_refs).
+void restart_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+double peak_gib() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) / (1024.0 * 1024.0);
+  return 0;
+}
+
+std::string with_unit(double value, const char* unit, int digits) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.*f %s", digits, value, unit);
+  return text;
+}
+
+}  // namespace
+
+Stages::Stages(std::string out, Console& console) : out_(std::move(out)), console_(console) {}
+
+void Stages::timed(const std::string& stage, const std::function<void()>& work) {
+  console_.note(stage);
+  restart_peak();
+  const auto began = std::chrono::steady_clock::now();
+  work();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  times_.push_back({stage, seconds, peak_gib()});
+}
+
+void Stages::forget(const std::vector<std::string>& later) const {
+  for (const std::string& part : later) {
+    std::error_code failed;
+    fs::remove_all(fs::path(out_) / part, failed);
+    if (failed) throw Error(out_ + "/" + part + ": cannot remove what an earlier run made: " + failed.message(), Fault::file);
+  }
+}
+
+World Stages::world(const Scenario& s) {
+  World world;
+  timed("world", [&] {
+    world = make_world(s.world, static_cast<std::uint64_t>(s.seed), console_.progress());
+    world.name = s.name;
+    const WorldCheck check = check_world(world);
+    if (!check.ok()) throw Error("the mine of seed " + std::to_string(s.seed) + " is broken: " + check.what(), Fault::bug);
+    plan_route(world, s.route, static_cast<std::uint64_t>(s.seed));  // a route that cannot be is said before files change
+    write_text(out_ + "/scenario.toml", resolved_toml(s));
+    save_world(out_ + "/world", world);
+    forget({"recording", "map", "score.json", "report"});
+  });
+  console_.note("  " + std::to_string(world.mesh.face.size()) + " triangles, " + std::to_string(world.pillars.size()) + " pillars, " +
+                std::to_string(world.numbers.loops) + " loops, void of " + with_unit(world.numbers.volume_m3, "m3", 1));
+  return world;
+}
+
+Stages::Driven Stages::drive(const Scenario& s, const World& world) {
+  Driven driven{};
+  timed("drive", [&] {
+    const auto seed = static_cast<std::uint64_t>(s.seed);
+    const Vehicle vehicle = load_vehicle(s.vehicle);
+    const Rig rig = load_rig(s.sensors.rig, s.sensors.baud);
+    const Route route = plan_route(world, s.route, seed);
+    const Drive path = adit::drive(world, route, vehicle, s.drive, seed, console_.progress());
+    driven.recording = record(world, path, rig, vehicle.hull, s.sensors, seed, console_.progress());
+    driven.exit_code = path.end == DriveEnd::finished ? 0 : 1;
+    write_text(out_ + "/scenario.toml", resolved_toml(s));
+    save_log(out_ + "/recording/log.h5", driven.recording.log);
+    save_truth(out_ + "/recording/truth.h5", driven.recording.truth);
+    forget({"map", "score.json", "report"});
+  });
+  const Drive& d = driven.recording.truth.drive;
+  const double minutes = d.path.empty() ? 0 : (d.path.stamp_s.back() - d.path.stamp_s.front()) / 60;
+  console_.note("  drove " + with_unit(d.driven_m, "m", 0) + " of " + with_unit(d.route.length_m, "m", 0) + " in " +
+                with_unit(minutes, "min", 1));
+  if (driven.exit_code != 0) console_.note("  the drive ended early (" + drive_end_name(d.end) + "): " + d.cause);
+  return driven;
+}
+
+Estimate Stages::map(const MapSettings& settings, const Log& log) {
+  Estimate estimate;
+  timed("map", [&] {
+    estimate = make_map(log, settings, console_.progress());
+    save_estimate(out_ + "/map", estimate);
+    forget({"score.json", "report"});
+  });
+  for (const std::string& n : estimate.notes) console_.note("  " + n);
+  return estimate;
+}
+
+Score Stages::score(const ScoreSettings& settings, const World& world, const Truth& truth, const Rig& nominal,
+                    const Estimate& estimate) {
+  Score score;
+  timed("score", [&] {
+    score = score_map(world, truth, nominal, estimate, settings, console_.progress());
+    write_score(out_ + "/score.json", score);
+    forget({"report"});
+  });
+  return score;
+}
+
+void Stages::report(const Scenario& s, const World& world, const Recording& recording, const Estimate& estimate, const Score& score) {
+  timed("report", [&] {
+    write_report(out_ + "/report", {world, recording.log, recording.truth, estimate, score, resolved_toml(s), s.name}, s.report,
+                 console_.progress());
+  });
+}
+
+void Stages::save_timing() const {
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  double total = 0;
+  for (const Timed& t : times_) {
+    stages[t.stage] = {{"seconds", t.seconds}, {"peak_gib", t.peak_gib}};
+    total += t.seconds;
+  }
+  write_text(out_ + "/timing.json", nlohmann::ordered_json{{"stages", stages}, {"seconds", total}}.dump(2) + "\n");
+}
+
+}  // namespace adit

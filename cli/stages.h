@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/estimate.h"
+#include "base/recording.h"
+#include "base/world.h"
+#include "cli/console.h"
+#include "cli/scenario.h"
+#include "eval/score.h"
+
+namespace adit {
+
+/// The stages of a run in their order, each reading what the one before it made. A stage that succeeds puts its files in
+/// place and removes what later stages had made from older input, so that a folder never mixes two runs.
+class Stages {
+ public:
+  Stages(std::string out, Console& console);
+
+  World world(const Scenario& s);
+  struct Driven {
+    Recording recording;
+    int exit_code;  // 1 where the drive ended early
+  };
+  Driven drive(const Scenario& s, const World& world);
+  Estimate map(const MapSettings& settings, const Log& log);
+  Score score(const ScoreSettings& settings, const World& world, const Truth& truth, const Rig& nominal, const Estimate& estimate);
+  void report(const Scenario& s, const World& world, const Recording& recording, const Estimate& estimate, const Score& score);
+
+  /// OUT/timing.json: seconds and peak memory of every stage that ran.
+  void save_timing() const;
+  const std::string& out() const { return out_; }
+
+ private:
+  struct Timed {
+    std::string stage;
+    double seconds, peak_gib;
+  };
+  std::string out_;
+  Console& console_;
+  std::vector<Timed> times_;
+
+  void timed(const std::string& stage, const std::function<void()>& work);
+  void forget(const std::vector<std::string>& later) const;
+};
+
+}  // namespace adit
