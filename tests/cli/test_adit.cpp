@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command as its users call it: the built program, its files, its exit codes, its words.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "base/files.h"
+
+namespace adit {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+const std::string tiny = ADIT_SOURCE_DIR "/tests/cli/tiny.toml";
+
+struct Answer {
+  int exit_code;
+  std::string out, err;
+};
+
+Answer adit_says(const std::string& words) {
+  const std::string at = ::testing::TempDir() + "adit_says_" + std::to_string(::getpid());
+  const int status = std::system((std::string(ADIT_BINARY) + " " + words + " >" + at + ".out 2>" + at + ".err").c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(at + ".out"), read_text(at + ".err")};
+}
+
+std::string fresh_folder(const std::string& name) {
+  const std::string dir = ::testing::TempDir() + "adit_cli_" + std::to_string(::getpid()) + "_" + name;
+  fs::remove_all(dir);
+  return dir;
+}
+
+// Every file below a folder with its bytes, but for the one that may differ between equal runs.
+std::map<std::string, std::string> bytes_of(const std::string& dir) {
+  std::map<std::string, std::string> all;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dir))
+    if (entry.is_regular_file() && entry.path().filename() != "timing.json")
+      all[fs::relative(entry.path(), dir).string()] = read_text(entry.path().string());
+  return all;
+}
+
+// One run of the tiny mine serves all tests that only look at it.
+class TinyRun : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    out_ = fresh_folder("tiny");
+    answer_ = adit_says("run " + tiny + " --threads 1 --json -o " + out_);
+  }
+  static void TearDownTestSuite() { fs::remove_all(out_); }
+  static std::string out_;
+  static Answer answer_;
+};
+std::string TinyRun::out_;
+Answer TinyRun::answer_;
+
+TEST_F(TinyRun, DoesTheWholeJobAndLeavesEveryFileOfTheContract) {
+  ASSERT_EQ(answer_.exit_code, 0) << answer_.err;
+  for (const char* file : {"scenario.toml", "timing.json", "world/mine.ply", "world/mine.glb", "world/truth.json", "recording/log.h5",
+                           "recording/truth.h5", "map/trajectory.tum", "map/grid.pgm", "map/grid.yaml", "map/points.ply",
+                           "map/surface.ply", "map/map.json", "score.json", "report/index.html"})
+    EXPECT_TRUE(fs::exists(out_ + "/" + file)) << file;
+}
+
+TEST_F(TinyRun, JsonPutsOneObjectOnStdoutAndNothingElse) {
+  const nlohmann::json said = nlohmann::json::parse(answer_.out);
+  EXPECT_EQ(said["out"], out_);
+  EXPECT_TRUE(said["score"]["trajectory"]["se3"]["ate_xy_rmse_m"]["value"].is_number());
+}
+
+TEST_F(TinyRun, TheMapIsRightToTheBarsOfASmallMine) {
+  const nlohmann::json score = nlohmann::json::parse(read_text(out_ + "/score.json"));
+  EXPECT_LT(score["trajectory"]["se3"]["ate_xy_rmse_m"]["value"], 0.2);
+  EXPECT_LT(score["map"]["se3"]["mae_m"]["value"], 0.1);
+  EXPECT_LT(std::abs(score["volume"]["error_percent"]["value"].get<double>()), 5);
+  EXPECT_EQ(score["closures"]["wrong"]["value"], 0);
+}
+
+TEST_F(TinyRun, TwoAndSevenThreadsMakeTheSameBytes) {
+  const auto one = bytes_of(out_);
+  for (const char* threads : {"2", "7"}) {
+    const std::string other = fresh_folder(std::string("threads") + threads);
+    const Answer said = adit_says("run " + tiny + " --threads " + threads + " --quiet -o " + other);
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    const auto same = bytes_of(other);
+    EXPECT_EQ(same.size(), one.size());
+    for (const auto& [file, bytes] : one) {
+      ASSERT_TRUE(same.contains(file)) << file;
+      EXPECT_TRUE(same.at(file) == bytes) << file << " differs on " << threads << " threads";
+    }
+    fs::remove_all(other);
+  }
+}
+
+TEST_F(TinyRun, MappingNeedsNoTruth) {
+  const std::string dir = fresh_folder("no_truth");
+  fs::create_directories(dir);
+  fs::copy(out_ + "/recording/log.h5", dir + "/log.h5");  // alone: no truth, no world, no scenario beside it
+  const Answer said = adit_says("map " + dir + "/log.h5 --quiet -o " + dir);
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  for (const char* file : {"trajectory.tum", "grid.pgm", "points.ply", "surface.ply", "map.json"})
+    EXPECT_TRUE(read_text(dir + "/map/" + file) == read_text(out_ + "/map/" + file)) << file;
+  fs::remove_all(dir);
+}
+
+TEST_F(TinyRun, AResolvedScenarioMakesTheSameMine) {
+  const std::string dir = fresh_folder("again");
+  const Answer said = adit_says("world " + out_ + "/scenario.toml --quiet -o " + dir);
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_TRUE(read_text(dir + "/world/mine.ply") == read_text(out_ + "/world/mine.ply"));
+  EXPECT_TRUE(read_text(dir + "/scenario.toml") == read_text(out_ + "/scenario.toml"));
+  fs::remove_all(dir);
+}
+
+TEST_F(TinyRun, ScoringAndReportingAgainGivesTheSameBytes) {
+  const auto before = bytes_of(out_);
+  const Answer scored = adit_says("score --quiet --world " + out_ + "/world --truth " + out_ + "/recording/truth.h5 --map " + out_ + "/map");
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  const Answer reported = adit_says("report --quiet " + out_);
+  ASSERT_EQ(reported.exit_code, 0) << reported.err;
+  for (const auto& [file, bytes] : bytes_of(out_)) EXPECT_TRUE(before.at(file) == bytes) << file;
+}
+
+TEST_F(TinyRun, TheTruthOfAnotherMineIsNotComparable) {
+  const std::string dir = fresh_folder("other_mine");
+  ASSERT_EQ(adit_says("world " + tiny + " --seed 77 --quiet -o " + dir).exit_code, 0);
+  const Answer said = adit_says("score --world " + dir + "/world --truth " + out_ + "/recording/truth.h5 --map " + out_ + "/map -o " + dir);
+  EXPECT_EQ(said.exit_code, 3) << said.err;
+  EXPECT_FALSE(fs::exists(dir + "/score.json"));
+  fs::remove_all(dir);
+}
+
+TEST_F(TinyRun, ATruncatedRecordingIsRefusedAndLeavesNothing) {
+  const std::string dir = fresh_folder("truncated");
+  const std::string log = read_text(out_ + "/recording/log.h5");
+  write_text(dir + "/log.h5", log.substr(0, log.size() / 2));
+  const Answer said = adit_says("map " + dir + "/log.h5 -o " + dir + "/m");
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_THAT(said.err, HasSubstr("log.h5"));
+  EXPECT_FALSE(fs::exists(dir + "/m"));
+  fs::remove_all(dir);
+}
+
+TEST_F(TinyRun, AMeshIsCheckedAndABrokenOneIsAnsweredNo) {
+  EXPECT_EQ(adit_says("world --check " + out_ + "/world/mine.ply").exit_code, 0);
+  EXPECT_EQ(adit_says("world --check " + out_ + "/scenario.toml").exit_code, 2);
+}
+
+TEST(Words, ABadKeyNamesFileLineAndRemedyAndWritesNothing) {
+  const std::string dir = fresh_folder("bad_key");
+  write_text(dir + "/s.toml", "name = 'x'\n[world]\nkinds = 'panel'\n");
+  const Answer said = adit_says("run " + dir + "/s.toml -o " + dir + "/o");
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_THAT(said.err, HasSubstr("s.toml:3: unknown key 'world.kinds' (did you mean 'world.kind'?)"));
+  EXPECT_FALSE(fs::exists(dir + "/o"));
+  fs::remove_all(dir);
+}
+
+TEST(Words, BadInputHasExitCodeTwoAndOneClearLine) {
+  for (const auto& [words, part] : std::map<std::string, std::string>{
+           {"run no-such-scenario", "there are:"},
+           {"run /no/such/file.toml", "no such file"},
+           {"run mini --set world.kind=cave", "must be one of"},
+           {"run mini --set nonsense", "key=value"},
+           {"run mini --set vehicle=tank", "tank"},
+           {"run mini --set sensors.rig=none", "none"},
+           {"run mini --set sensors.baud=1200", "1200"},
+           {"map /no/such/log.h5", "no such file"},
+           {"score --world /none --truth /none --map /none", "/none"},
+           {"report /none", "no such folder"},
+           {"list nonsense", "there are"},
+           {"frobnicate", ""},
+           {"", ""}}) {
+    const std::string out = fresh_folder("bad_input");
+    const Answer said = adit_says(words + (words.starts_with("run") || words.starts_with("map") ? " -o " + out : ""));
+    EXPECT_EQ(said.exit_code, 2) << words << "\n" << said.err;
+    EXPECT_THAT(said.err + said.out, HasSubstr(part)) << words;
+    EXPECT_FALSE(fs::exists(out)) << words;
+  }
+}
+
+TEST(Words, AFolderThatCannotBeWrittenIsExitCode74) {
+  const std::string dir = fresh_folder("unwritable");
+  write_text(dir + "/file", "a file where a folder is wanted");
+  EXPECT_EQ(adit_says("world " + tiny + " --quiet -o " + dir + "/file/out").exit_code, 74);
+  fs::remove_all(dir);
+}
+
+TEST(Words, ListNamesWhatIsBundledAndHelpTheKeys) {
+  const Answer list = adit_says("list");
+  EXPECT_EQ(list.exit_code, 0);
+  for (const char* name : {"bruceton", "mini", "cart4", "lms200", "cart"}) EXPECT_THAT(list.out, HasSubstr(name));
+  EXPECT_THAT(adit_says("help scenario").out, HasSubstr("world.kind"));
+  EXPECT_THAT(adit_says("--help").out, HasSubstr("run"));
+}
+
+}  // namespace
+}  // namespace adit
