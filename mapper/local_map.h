@@ -18,6 +18,7 @@ struct Surfel {
 /// Ribs around one place in some frame A: surfels on a fine grid, found by place.
 class LocalMap {
  public:
+  LocalMap() = default;
   /// @param X_AB pose of each scan's body in A; as many as scans. Surfels closer than cell_m with like normals are
   /// merged.
   LocalMap(std::span<const ScanPoints* const> scans, std::span<const Pose2> X_AB, double cell_m = 0.1);

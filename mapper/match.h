@@ -40,7 +40,8 @@ struct Match {
 };
 
 /// Places a scan in a map from a guess: point to line, robust weights, Gauss-Newton.
-/// Directions that the ribs leave open are held at the prior, or at the guess where there is none.
+/// A prior counts as one more quadratic term. Directions that the ribs leave open are its matter alone; without one
+/// they stay at the guess.
 Match match_scan(const ScanPoints& scan, const LocalMap& map, const Pose2& guess_X_AB, const MatchSettings& settings,
                  const std::optional<PosePrior>& prior = {});
 

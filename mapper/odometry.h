@@ -33,7 +33,9 @@ struct OdometrySettings {
   double key_step_deg = 10;
   double speed_change_m_s2 = 0.5;  // 1 sd of the change of speed, for the prediction
   double turn_change_deg_s2 = 40;
-  double search_m = 0.6;  // half width of the search when the refiner fails
+  double speed_sigma_m_s = 0.05;  // of the speed where a degenerate stretch begins
+  double information_scale = 1;   // of a step against that of its match
+  double search_m = 0.6;          // half width of the search when the refiner fails
   double search_deg = 25;
   double most_speed_m_s = 3;  // a faster match is a wrong one
 };
@@ -45,16 +47,5 @@ Fields fields(OdometrySettings& s);
 /// @param scans at least one; a scan without a single rib point moves as predicted and counts as lost
 Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings,
                          const Progress& progress = {});
-
-/// Places every scan once more, each against the scans that lie near it in space at the aligned poses, with those poses
-/// as a quadratic prior (algorithm section III-C of Thrun et al. 2003). Parallel; what cannot be matched keeps its
-/// pose.
-struct RematchSettings {
-  double prior_sigma_m = 0.05, prior_sigma_deg = 0.5;  // of an aligned pose
-  int neighbours = 20;                                 // most key scans that make the map around a scan
-  double reach_m = 5;                                  // they lie within
-};
-std::vector<Pose2> rematch(const std::vector<ScanPoints>& scans, const std::vector<Pose2>& X_MB,
-                           const RematchSettings& settings, const MatchSettings& match, const Progress& progress = {});
 
 }  // namespace adit

@@ -31,6 +31,7 @@ struct ScanPoints {
   std::vector<std::int32_t> beam;        // (n)
 
   size_t size() const { return p_B.size(); }
+  void reserve(size_t n);
 };
 
 /// Motion of the body while a scan is taken: constant speed in B, per second.
@@ -40,11 +41,21 @@ struct Twist2 {
 
 /// The motion that takes dt_s from identity to X.
 Twist2 twist_of(const Pose2& X, double dt_s);
-/// Pose after dt_s of that motion (first order in the turn: x and y are those of constant speed along an arc).
+/// Pose after dt_s of that motion, along an arc.
 Pose2 pose_after(const Twist2& twist, double dt_s);
 
-/// Points of one scan, each beam taken back to the stamp by the motion. @param range_m one scan of `mount`.
-ScanPoints scan_points(std::span<const float> range_m, const Mount& mount, const Twist2& twist,
+/// The beams of a mounted laser, level, in B: made once, used for every scan.
+struct BeamFan {
+  Vec2 origin_B = Vec2::Zero();
+  std::vector<Vec2> direction_B;  // (beams) in plan; shorter than 1 where the mount tilts a beam
+  std::vector<double> offset_s;   // (beams) after the stamp
+  double step_rad = 0;            // between neighbours
+  double sigma_m = 0;             // of one range, 1 sd
+};
+BeamFan fan_of(const Mount& mount);
+
+/// Points of one scan, each beam taken back to the stamp by the motion. @param range_m (beams of the fan)
+ScanPoints scan_points(std::span<const float> range_m, const BeamFan& fan, const Twist2& twist,
                        const ScanPointSettings& settings);
 
 /// All scans, undone by the motion that the poses X_MB (one a scan) tell. Parallel.

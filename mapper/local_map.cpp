@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapper/local_map.h"
+
+#include "base/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace adit {
+namespace {
+
+constexpr double index_m = 0.25;  // cell of the index
+constexpr double like = 0.5;      // cosine between normals of one rib
+
+struct Bounds {
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
+  Vec2 high = Vec2::Constant(-std::numeric_limits<double>::infinity());
+  void add(const Vec2& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+};
+
+// What falls into one fine cell.
+struct Bin {
+  Vec2 p = Vec2::Zero(), normal = Vec2::Zero(), first_normal;
+  double weight = 0, sigma_normal_rad = 0, count = 0;
+  int scans = 0, last_scan = -1;
+};
+
+}  // namespace
+
+LocalMap::LocalMap(std::span<const ScanPoints* const> scans, std::span<const Pose2> X_AB, double cell_m) {
+  ADIT_CHECK(scans.size() == X_AB.size());
+  std::vector<Vec2> p, normal;
+  Bounds box;
+  for (size_t i = 0; i < scans.size(); ++i) {
+    const double c = std::cos(X_AB[i].yaw_rad), s = std::sin(X_AB[i].yaw_rad);
+    for (size_t k = 0; k < scans[i]->size(); ++k) {
+      const Vec2 &q = scans[i]->p_B[k], &n = scans[i]->normal_B[k];
+      p.emplace_back(X_AB[i].x_m + c * q.x() - s * q.y(), X_AB[i].y_m + s * q.x() + c * q.y());
+      normal.emplace_back(c * n.x() - s * n.y(), s * n.x() + c * n.y());
+      box.add(p.back());
+    }
+  }
+  if (p.empty()) return;
+  const Vec2 low = box.low;
+  const size_t width = static_cast<size_t>((box.high.x() - low.x()) / cell_m) + 1;
+  const size_t height = static_cast<size_t>((box.high.y() - low.y()) / cell_m) + 1;
+  std::vector<std::int32_t> bin_of(width * height, -1);
+  std::vector<Bin> bins;
+  bins.reserve(p.size() / 2);
+  size_t at = 0;
+  for (size_t i = 0; i < scans.size(); ++i)
+    for (size_t k = 0; k < scans[i]->size(); ++k, ++at) {
+      const Vec2 cell = (p[at] - low) / cell_m;
+      std::int32_t& b = bin_of[static_cast<size_t>(cell.y()) * width + static_cast<size_t>(cell.x())];
+      if (b < 0) {
+        b = static_cast<std::int32_t>(bins.size());
+        bins.emplace_back().first_normal = normal[at];
+      }
+      Bin& bin = bins[b];
+      if (bin.first_normal.dot(normal[at]) < like) continue;  // the far side of a thin wall
+      const double w = 1 / (scans[i]->sigma_m[k] * scans[i]->sigma_m[k]);
+      bin.p += w * p[at], bin.normal += w * normal[at], bin.weight += w;
+      bin.sigma_normal_rad += scans[i]->sigma_normal_rad[k], bin.count += 1;
+      if (bin.last_scan != static_cast<int>(i)) bin.last_scan = static_cast<int>(i), ++bin.scans;
+    }
+  surfel_.reserve(bins.size());
+  // Normals of one scan share their points, those of different scans do not.
+  for (const Bin& b : bins)
+    surfel_.push_back(
+        {b.p / b.weight, b.normal.normalized(), b.sigma_normal_rad / b.count / std::sqrt(double(b.scans))});
+  index();
+}
+
+void LocalMap::index() {
+  Bounds box;
+  for (const Surfel& s : surfel_) box.add(s.p);
+  low_ = box.low;
+  width_ = static_cast<int>((box.high.x() - low_.x()) / index_m) + 1;
+  height_ = static_cast<int>((box.high.y() - low_.y()) / index_m) + 1;
+  const auto cell = [&](const Vec2& p) {
+    return static_cast<size_t>((p.y() - low_.y()) / index_m) * width_ +
+           static_cast<size_t>((p.x() - low_.x()) / index_m);
+  };
+  start_.assign(static_cast<size_t>(width_) * height_ + 1, 0);
+  for (const Surfel& s : surfel_) ++start_[cell(s.p) + 1];
+  for (size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
+  std::vector<std::int32_t> next(start_.begin(), start_.end() - 1);
+  std::vector<Surfel> sorted(surfel_.size());
+  for (const Surfel& s : surfel_) sorted[next[cell(s.p)]++] = s;
+  surfel_.swap(sorted);
+}
+
+int LocalMap::nearest(const Vec2& p, const Vec2& normal, double radius_m) const {
+  const auto clamp_x = [&](double x) {
+    return static_cast<int>(std::clamp((x - low_.x()) / index_m, -1.0, width_ + 0.0));
+  };
+  const auto clamp_y = [&](double y) {
+    return static_cast<int>(std::clamp((y - low_.y()) / index_m, -1.0, height_ + 0.0));
+  };
+  const int i0 = std::max(0, clamp_x(p.x() - radius_m)), i1 = std::min(width_ - 1, clamp_x(p.x() + radius_m));
+  const int j0 = std::max(0, clamp_y(p.y() - radius_m)), j1 = std::min(height_ - 1, clamp_y(p.y() + radius_m));
+  int best = -1;
+  double best_d2 = radius_m * radius_m;
+  for (int j = j0; j <= j1 && i0 <= i1; ++j) {
+    const size_t row = static_cast<size_t>(j) * width_;
+    for (std::int32_t k = start_[row + i0]; k < start_[row + i1 + 1]; ++k) {
+      const double dx = surfel_[k].p.x() - p.x(), dy = surfel_[k].p.y() - p.y();
+      const double d2 = dx * dx + dy * dy;
+      if (d2 < best_d2 && surfel_[k].normal.dot(normal) > like) best_d2 = d2, best = k;
+    }
+  }
+  return best;
+}
+
+}  // namespace adit

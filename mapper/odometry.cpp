@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapper/odometry.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <numbers>
+
+namespace adit {
+namespace {
+
+using Mat3 = Eigen::Matrix3d;
+constexpr double degree = std::numbers::pi / 180;
+
+struct KeyScan {
+  ScanPoints points;
+  Pose2 X_MB;
+};
+
+LocalMap map_of(const std::deque<KeyScan>& keys) {
+  std::vector<const ScanPoints*> scans;
+  std::vector<Pose2> poses;
+  for (const KeyScan& k : keys) scans.push_back(&k.points), poses.push_back(k.X_MB);
+  return LocalMap(scans, poses);
+}
+
+Mat3 prediction_information(double dt_s, const OdometrySettings& s) {
+  const double m = s.speed_change_m_s2 * dt_s * dt_s + 1e-4, rad = s.turn_change_deg_s2 * degree * dt_s * dt_s + 1e-5;
+  return Vec3(1 / (m * m), 1 / (m * m), 1 / (rad * rad)).asDiagonal();
+}
+
+// How far a stretch in which one direction is only predicted can have gone astray: the error of a speed that wanders.
+class Drift {
+ public:
+  void start(double speed_sigma_m_s) { p_ = pv_ = 0, v_ = speed_sigma_m_s * speed_sigma_m_s; }
+  void step(double dt_s, double change_m_s2) {
+    p_ += 2 * pv_ * dt_s + v_ * dt_s * dt_s;
+    pv_ += v_ * dt_s;
+    v_ += change_m_s2 * change_m_s2 * dt_s * 0.1;  // changes of speed last about a tenth of a second each
+  }
+  double sigma_m() const { return std::sqrt(p_); }
+
+ private:
+  double p_ = 0, pv_ = 0, v_ = 0;
+};
+
+// What one step came to.
+struct Step {
+  Pose2 X_MB;
+  Mat3 information;
+  bool placed = false, degenerate = false;
+  ScanPoints points;
+};
+
+/// The state that goes from scan to scan.
+class Tracker {
+ public:
+  Tracker(const Scans& scans, const Mount& mount, const OdometrySettings& s)
+      : scans_(scans), fan_(fan_of(mount)), s_(s), scan_s_(fan_.offset_s.empty() ? 0 : scan_time(fan_)) {}
+
+  void begin() {
+    const ScanPoints points = scan_points(scans_[0], fan_, {}, s_.points);
+    add_key({points, Pose2{}});
+  }
+
+  Step advance(size_t i, const Pose2& X_before, double dt_s) {
+    const bool gap = dt_s > max_gap_s;
+    if (gap) twist_ = {};
+    const Pose2 predicted = X_before * pose_after(twist_, dt_s);
+    const PosePrior prior{predicted, prediction_information(dt_s, s_)};
+    Step out{predicted, prior.information, false, false, scan_points(scans_[i], fan_, twist_, s_.points)};
+    std::optional<Match> match = gap ? std::nullopt : place(out.points, predicted, prior, X_before, dt_s);
+    if (match && worth_a_second_look(X_before, match->X_AB, dt_s)) {
+      const Twist2 better = twist_of(X_before.inverse() * match->X_AB, dt_s);
+      out.points = scan_points(scans_[i], fan_, better, s_.points);
+      match = place(out.points, match->X_AB, prior, X_before, dt_s);
+    }
+    if (!match) match = search(out.points, predicted, X_before, dt_s);
+    if (match) {
+      out.X_MB = match->X_AB;
+      out.placed = true;
+      out.degenerate = match->degenerate;
+      out.information = match->information + (match->degenerate ? prior.information : Mat3::Zero());
+      if (!gap) twist_ = twist_of(X_before.inverse() * out.X_MB, dt_s);
+    }
+    keep(out);
+    return out;
+  }
+
+ private:
+  static constexpr double max_gap_s = 1.5;
+  static constexpr int lost_for_good = 5;  // scans in a row; then the map begins anew where the prediction ended
+
+  static double scan_time(const BeamFan& fan) { return *std::max_element(fan.offset_s.begin(), fan.offset_s.end()); }
+
+  bool plausible(const Match& m, const Pose2& X_before, double dt_s) const {
+    const Pose2 step = X_before.inverse() * m.X_AB;
+    return m.converged && step.position().norm() < s_.most_speed_m_s * std::max(dt_s, 0.05) + 0.1;
+  }
+
+  std::optional<Match> place(const ScanPoints& points, const Pose2& guess, const PosePrior& prior,
+                             const Pose2& X_before, double dt_s) const {
+    const Match m = match_scan(points, map_, guess, s_.match, prior);
+    return plausible(m, X_before, dt_s) ? std::optional(m) : std::nullopt;
+  }
+
+  std::optional<Match> search(const ScanPoints& points, const Pose2& predicted, const Pose2& X_before,
+                              double dt_s) const {
+    const SearchWindow window{s_.search_m, s_.search_deg * degree};
+    const WideMatch wide = search_scan(points, map_, predicted, window, s_.match);
+    return plausible(wide.best, X_before, dt_s) ? std::optional(wide.best) : std::nullopt;
+  }
+
+  // The beams were taken back by the predicted motion: again, if the motion was another by what one sees.
+  bool worth_a_second_look(const Pose2& X_before, const Pose2& X_MB, double dt_s) const {
+    const Twist2 t = twist_of(X_before.inverse() * X_MB, dt_s);
+    const double moved = std::hypot(t.x_m_s - twist_.x_m_s, t.y_m_s - twist_.y_m_s) * scan_s_;
+    return moved > 1e-3 || std::abs(t.yaw_rad_s - twist_.yaw_rad_s) * scan_s_ > 3e-4;
+  }
+
+  void keep(const Step& step) {
+    lost_ = step.placed ? 0 : lost_ + 1;
+    if (lost_ >= lost_for_good && step.points.size() >= 30) {
+      keys_.clear();
+      add_key({step.points, step.X_MB});
+      lost_ = 0;
+      return;
+    }
+    if (!step.placed) return;
+    const Pose2 off = keys_.back().X_MB.inverse() * step.X_MB;
+    if (off.position().norm() < s_.key_step_m && std::abs(off.yaw_rad) < s_.key_step_deg * degree) return;
+    add_key({step.points, step.X_MB});
+  }
+
+  void add_key(KeyScan key) {
+    keys_.push_back(std::move(key));
+    if (keys_.size() > static_cast<size_t>(s_.key_scans)) keys_.pop_front();
+    map_ = map_of(keys_);
+  }
+
+  const Scans& scans_;
+  const BeamFan fan_;
+  const OdometrySettings& s_;
+  const double scan_s_;
+  Twist2 twist_;
+  std::deque<KeyScan> keys_;
+  LocalMap map_;
+  int lost_ = 0;
+};
+
+// Runs of steps whose motion was only predicted in some direction, with the sigma to which each has grown.
+std::vector<DegenerateStretch> stretches_of(const std::vector<double>& stamp_s, const std::vector<bool>& weak,
+                                            const OdometrySettings& s) {
+  constexpr double bridge_s = 1.0;  // a single good scan between two weak ones does not tell the length
+  std::vector<DegenerateStretch> out;
+  Drift drift;
+  for (size_t i = 1; i < weak.size(); ++i) {
+    if (!weak[i]) continue;
+    if (out.empty() || stamp_s[i - 1] - out.back().to_s > bridge_s) {
+      out.push_back({stamp_s[i - 1], stamp_s[i], 0});
+      drift.start(s.speed_sigma_m_s);
+    }
+    drift.step(stamp_s[i] - stamp_s[i - 1], s.speed_change_m_s2);
+    out.back().to_s = stamp_s[i];
+    out.back().sigma_m = drift.sigma_m();
+  }
+  return out;
+}
+
+}  // namespace
+
+Fields fields(OdometrySettings& s) {
+  Fields all = fields(s.points);
+  append(all, "match", fields(s.match));
+  const Fields own{
+      {"key_scans", &s.key_scans, "past key scans that make the map which a scan is matched to", 1, 1000},
+      {"key_step_m", &s.key_step_m, "way between key scans", 0.01, 10},
+      {"key_step_deg", &s.key_step_deg, "turn between key scans", 0.1, 180},
+      {"speed_change_m_s2", &s.speed_change_m_s2, "change of speed, 1 sd, for the prediction", 0.001, 100},
+      {"turn_change_deg_s2", &s.turn_change_deg_s2, "change of turning, 1 sd, for the prediction", 0.1, 10000},
+      {"speed_sigma_m_s", &s.speed_sigma_m_s, "of the speed where a degenerate stretch begins, 1 sd", 0, 10},
+      {"search_m", &s.search_m, "half width of the search where matching fails", 0.1, 10},
+      {"search_deg", &s.search_deg, "half width of the search where matching fails", 1, 180},
+      {"most_speed_m_s", &s.most_speed_m_s, "a faster match is a wrong one", 0.1, 100},
+      {"information_scale", &s.information_scale, "of a step against that of its match, by trial", 1e-6, 1e6}};
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
+
+Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings,
+                         const Progress& progress) {
+  const size_t n = scans.size();
+  if (n == 0) throw Error("laser '" + horizontal.name + "': no scan; a map needs at least one");
+  Odometry out;
+  out.stamp_s = scans.stamp_s;
+  out.X_MB.assign(n, Pose2{});
+  out.X_step.assign(n, Pose2{});
+  out.information.assign(n, Mat3::Identity());
+  std::vector<bool> weak(n, false);
+  Tracker tracker(scans, horizontal, settings);
+  tracker.begin();
+  for (size_t i = 1; i < n; ++i) {
+    const Step step = tracker.advance(i, out.X_MB[i - 1], scans.stamp_s[i] - scans.stamp_s[i - 1]);
+    out.X_step[i] = out.X_MB[i - 1].inverse() * step.X_MB;
+    out.X_MB[i] = out.X_MB[i - 1] * out.X_step[i];
+    out.information[i] = settings.information_scale * step.information;
+    weak[i] = step.degenerate || !step.placed;
+    out.lost += !step.placed;
+    if (i % 50 == 0 || i + 1 == n) progress("match scans", static_cast<double>(i + 1), static_cast<double>(n));
+  }
+  out.degenerate = stretches_of(scans.stamp_s, weak, settings);
+  return out;
+}
+
+}  // namespace adit
