@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/follower.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+
+namespace adit {
+
+Follower::Follower(const Route& route) {
+  for (const Vec2& p : route.line)
+    if (line_.empty() || (p - line_.back()).norm() > 1e-6) line_.push_back(p);
+  if (line_.size() < 2) throw Error("route: needs at least two different points, has " + std::to_string(line_.size()));
+  at_m_.assign(line_.size(), 0);
+  for (size_t i = 1; i < line_.size(); ++i) at_m_[i] = at_m_[i - 1] + (line_[i] - line_[i - 1]).norm();
+  length_m_ = at_m_.back();
+}
+
+size_t Follower::segment(double along_m) const {
+  const auto next = std::upper_bound(at_m_.begin() + 1, at_m_.end() - 1, along_m);
+  return static_cast<size_t>(next - at_m_.begin()) - 1;
+}
+
+Vec2 Follower::point(double along_m) const {
+  const size_t i = segment(along_m);
+  return line_[i] + (along_m - at_m_[i]) / (at_m_[i + 1] - at_m_[i]) * (line_[i + 1] - line_[i]);
+}
+
+double Follower::heading_rad(double along_m) const {
+  const size_t i = segment(along_m);
+  const Vec2 d = line_[i + 1] - line_[i];
+  return std::atan2(d.y(), d.x());
+}
+
+Guide Follower::look(const Pose2& X_WA, double lookahead_m) {
+  // Newton's steps to the foot of the perpendicular; small ones, for the foot never leaps to another stretch.
+  for (int k = std::exchange(found_, true) ? 3 : 100; k > 0; --k) {
+    const double heading = heading_rad(foot_m_);
+    const double ahead = (X_WA.position() - point(foot_m_)).dot(Vec2(std::cos(heading), std::sin(heading)));
+    foot_m_ += std::clamp(ahead, -0.05, 0.05);
+  }
+  Guide guide;
+  guide.along_m = foot_m_;
+  const double heading = heading_rad(foot_m_);
+  const Vec2 off = X_WA.position() - point(foot_m_);
+  guide.cross_m = -std::sin(heading) * off.x() + std::cos(heading) * off.y();
+  const Vec2 goal_A = X_WA.inverse() * point(foot_m_ + lookahead_m);
+  guide.curvature = 2 * goal_A.y() / std::max(goal_A.squaredNorm(), 0.25 * lookahead_m * lookahead_m);
+  for (double s = foot_m_; s < foot_m_ + 1.5; s += 0.25) {
+    const double turn = wrap_angle(heading_rad(s + 0.75) - heading_rad(s));
+    guide.curvature_ahead = std::max(guide.curvature_ahead, std::abs(turn) / 0.75);
+  }
+  return guide;
+}
+
+}  // namespace adit
