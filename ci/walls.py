@@ -25,7 +25,7 @@ HOMES = {
     r"GL/": ["eval/scene_osmesa.cpp"],
     r"png\.h": ["eval/png.cpp"],
     r"stb_|stb/": ["eval/type.cpp"],
-    r"hdf5\.h|H5": ["base/recording.cpp"],
+    r"hdf5\.h|H5": ["base/h5.cpp"],
     r"toml\+\+/": ["base/config.cpp"],
     r"tiny_gltf": ["base/mesh_glb.cpp"],
     r"tbb/|oneapi/": ["base/parallel.cpp"],

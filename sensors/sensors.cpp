@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sensors/sensors.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "rays/caster.h"
+#include "sensors/noise.h"
+#include "sensors/sweep.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace adit {
+namespace {
+
+std::string place_name(const Vec3& p) {
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", p.x(), p.y(), p.z());
+  return text;
+}
+
+// Faces are seen from their inner side by a laser in the open; one in the rock sees most of them from behind.
+void check_open(const Caster& caster, const Pose& X_WB, const Mount& mount) {
+  const Pose X_WS = X_WB * mount.X_BS;
+  int behind = 0;
+  for (const Vec3& d : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
+    const Ray ray{X_WS.translation(), X_WS.linear() * d};
+    const Hit hit = caster.nearest(ray);
+    behind += hit.face >= 0 && caster.mesh().normal(static_cast<size_t>(hit.face)).dot(ray.direction) < 0;
+  }
+  if (behind > 3)
+    throw Error("laser '" + mount.name + "' starts inside the rock at " + place_name(X_WS.translation()) +
+                " m in W; lower its mount or begin the drive elsewhere");
+}
+
+void check(const Drive& drive, const Rig& rig, const SensorSettings& settings) {
+  if (drive.path.size() < 2) throw Error("a drive of fewer than two poses cannot be recorded");
+  for (const Mount& mount : rig.mounts) {
+    const double scan_s = mount.laser.turn_s * mount.laser.interlace;
+    if (settings.jitter_s * 2 >= scan_s)
+      throw Error("sensors.jitter_s = " + std::to_string(settings.jitter_s) + " is too large for laser '" + mount.name +
+                  "': it must be less than half of one scan's " + std::to_string(scan_s) +
+                  " s, or stamps go backwards");
+  }
+}
+
+// What is logged is when the computer believes that a scan began.
+std::vector<double> logged(const std::vector<double>& times, size_t mount, const SensorSettings& settings,
+                           std::uint64_t seed) {
+  std::vector<double> stamps = times;
+  for (size_t n = 0; n < stamps.size(); ++n)
+    stamps[n] += settings.jitter_s * (2 * uniform(seed, Draw::laser_jitter, scan_address(mount, n), 0) - 1);
+  return stamps;
+}
+
+void make_room(size_t scans, int beams, Scans& log, ScanTruth& truth) {
+  const size_t n = scans * static_cast<size_t>(beams);
+  log.beams = beams;
+  log.range_m.resize(n);
+  truth.range_m.resize(n);
+  truth.label.resize(n);
+  truth.part.resize(n);
+  truth.incidence_rad.resize(n);
+  truth.face.resize(n);
+}
+
+}  // namespace
+
+Recording record(const World& world, const Drive& drive, const Rig& nominal, const Hull& hull,
+                 const SensorSettings& settings, std::uint64_t seed, const Progress& progress) {
+  check(drive, nominal, settings);
+  const Caster caster(world.mesh);
+  const Rig rig = true_rig(nominal, settings, seed);
+  const size_t lasers = rig.mounts.size();
+  const double begin_s = drive.path.stamp_s.front(), end_s = drive.path.stamp_s.back();
+
+  std::vector<std::vector<double>> times(lasers);
+  double total = 0, done = 0;
+  for (size_t i = 0; i < lasers; ++i) {
+    check_open(caster, drive.path.X_WB.front(), rig.mounts[i]);
+    times[i] = scan_times(rig.mounts[i], i, begin_s, end_s, settings, seed);
+    if (times[i].empty())
+      throw Error("a drive of " + std::to_string(end_s - begin_s) + " s is too short for one scan of laser '" +
+                  rig.mounts[i].name + "'");
+    total += static_cast<double>(times[i].size());
+  }
+
+  Recording recording{.log = {nominal, std::vector<Scans>(lasers)},
+                      .truth = {world_hash(world), drive, rig, std::vector<ScanTruth>(lasers)}};
+  for (size_t i = 0; i < lasers; ++i) {
+    // When a laser begins is no secret: its stamps tell.
+    recording.log.rig.mounts[i].phase_s = rig.mounts[i].phase_s;
+    Scans& scans = recording.log.scans[i];
+    ScanTruth& truth = recording.truth.scans[i];
+    make_room(times[i].size(), rig.mounts[i].laser.beams, scans, truth);
+    truth.stamp_s = times[i];
+    scans.stamp_s = logged(times[i], i, settings, seed);
+    const Sweep sweep(caster, drive.path, rig.mounts[i], i, hull, settings, seed);
+    constexpr size_t block = 1024, grain = 8;  // scans between two words of progress, and at a stretch on one thread
+    for (size_t from = 0; from < times[i].size(); from += block) {
+      const size_t n = std::min(block, times[i].size() - from);
+      parallel_chunks(n, grain, [&](size_t b, size_t e) { sweep.fire(times[i], from + b, from + e, scans, truth); });
+      done += static_cast<double>(n);
+      progress("scans", done, total);
+    }
+  }
+  return recording;
+}
+
+}  // namespace adit

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/drive.h"
+#include "base/hull.h"
+#include "base/recording.h"
+#include "rays/caster.h"
+#include "sensors/beam.h"
+#include "sensors/settings.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace adit {
+
+/// When the scans of a mount truly begin: from begin_s + phase, an interval apart, later by whole mirror scans where
+/// the link loses some. The last one ends before end_s.
+std::vector<double> scan_times(const Mount& mount, size_t index, double begin_s, double end_s,
+                               const SensorSettings& settings, std::uint64_t seed);
+
+/// One laser on its way through a mine: fires whole scans into the arrays of a recording.
+class Sweep {
+ public:
+  /// The mount is the true one; everything given must outlive this.
+  Sweep(const Caster& caster, const Trajectory& path, const Mount& mount, size_t index, const Hull& hull,
+        const SensorSettings& settings, std::uint64_t seed);
+
+  /// Fires scans [begin, end), which start at times[i], into rows begin to end of arrays that are large enough already.
+  /// Safe to call from many threads for different rows.
+  void fire(const std::vector<double>& times, size_t begin, size_t end, Scans& scans, ScanTruth& truth) const;
+
+ private:
+  void aim(double time_s, size_t scan, std::vector<Ray>& rays) const;
+
+  const Caster* caster_;
+  const Trajectory* path_;
+  const Mount* mount_;
+  size_t index_;
+  const SensorSettings* settings_;
+  std::uint64_t seed_;
+  double bias_m_;
+  std::vector<Meeting> shadow_;           // (beams) what each meets of its own vehicle
+  std::vector<double> angle_, offset_s_;  // (beams)
+};
+
+}  // namespace adit
