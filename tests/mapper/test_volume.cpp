@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/rig.h"
+#include "mapper/fan.h"
+#include "mapper/surface.h"
+#include "mapper/volume.h"
+#include "tests/support/shapes.h"
+#include "tests/support/tube_log.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace adit {
+namespace {
+
+constexpr double length_m = 20, width_m = 3.7, height_m = 1.9;
+
+/// The first and the last place of a laser that bounded the swept void, along x.
+double swept_length(const Log& log, int laser, const Trajectory& path) {
+  const auto scans = covered_scans(log, laser, path);
+  const auto x = [&](size_t n) {
+    return (path.at(log.scans[laser].stamp_s[n]) * log.rig.mounts[laser].X_BS).translation().x();
+  };
+  return x(scans.back()) - x(scans.front());
+}
+
+Log level_log(const Rig& rig, const Trajectory& path, double noise_m) {
+  return tube_log(fine_box_mesh({0, -width_m / 2, 0}, {length_m, width_m / 2, height_m}, 5), rig, path, noise_m, 3);
+}
+
+/// Columns of which a whole number fits the width: no aliasing along the walls.
+VolumeSettings fine() {
+  VolumeSettings settings;
+  settings.cell_m = 0.05;
+  return settings;
+}
+
+Trajectory level_path() {
+  return ride_along(straight_line(2, 18), {}, {});
+}
+
+TEST(Fan, EndsOfBeamsLieOnTheWallsHoweverTheLaserMoves) {
+  Ride ride;
+  ride.pitch_deg = 2, ride.roll_deg = 2, ride.heave_m = 0.02;
+  const Trajectory path = ride_along(straight_line(2, 8), {}, ride);
+  const Log log = level_log(load_rig("cart4", 38400), path, 0);
+  for (size_t laser = 0; laser < log.scans.size(); ++laser)
+    for (const size_t scan : covered_scans(log, static_cast<int>(laser), path))
+      for (const FanBeam& beam : fan_of(log, static_cast<int>(laser), scan, path, 7)) {
+        const Vec3& p = beam.end;
+        const double off = std::min({std::abs(std::abs(p.y()) - width_m / 2), std::abs(p.z()),
+                                     std::abs(p.z() - height_m), std::abs(p.x()), std::abs(p.x() - length_m)});
+        // A turn of 7 ms taken as even, while 10 deg/s change by 2 % in it: 0.0002 deg over 18 m.
+        EXPECT_LT(off, 1e-3);
+      }
+}
+
+TEST(Volume, OfALevelTunnelIsWidthTimesHeightTimesLength) {
+  const Trajectory path = level_path();
+  const Log log = level_log(load_rig("cart4", 38400), path, 0);
+  const MappedVoid mapped = map_void(log, path, fine());
+  const double up = swept_length(log, find_view(log.rig, View::up), path);
+  // Both fans sweep equally long pieces, 0.7 m shifted, that overlap in height over 0.3 m: the lower and the upper
+  // part.
+  const double upper = height_m - 0.75, lower = 1.05, overlap = 0.3;
+  const double both = up - 0.7;
+  const double expected = width_m * (upper * up + lower * up - overlap * both);
+  ASSERT_TRUE(mapped.volume_m3);
+  // Corners of the section cut by chords between beams 1 deg apart, and columns at the ends: 0.5 %.
+  EXPECT_NEAR(*mapped.volume_m3 / expected, 1, 0.005);
+  EXPECT_EQ(open_edges(mapped.surface), 0u);
+  EXPECT_NEAR(enclosed_volume(mapped.surface) / *mapped.volume_m3, 1, 0.01);
+  EXPECT_EQ(mapped.surface.label.size(), mapped.surface.face.size());
+}
+
+TEST(Volume, TruePosesOfAShakenCartGiveTheSameVolume) {
+  Ride ride;
+  ride.pitch_deg = 2, ride.roll_deg = 1.5, ride.heave_m = 0.02, ride.stop_s = 4;
+  const Trajectory shaken = ride_along(straight_line(2, 18), {}, ride);
+  const Rig rig = load_rig("cart4", 38400);
+  const Log log = level_log(rig, shaken, 0.005);
+  const MappedVoid mapped = map_void(log, shaken, {}),
+                   level = map_void(level_log(rig, level_path(), 0.005), level_path(), {});
+  // Ends that lean, and noise that a union takes the outer side of where fans overlap.
+  EXPECT_NEAR(*mapped.volume_m3 / *level.volume_m3, 1, 0.01);
+  EXPECT_EQ(open_edges(mapped.surface), 0u);
+}
+
+TEST(Volume, ARigWithoutAnUpwardLaserMapsNone) {
+  Log log = level_log(load_rig("cart4", 38400), level_path(), 0);
+  const int up = find_view(log.rig, View::up);
+  log.rig.mounts.erase(log.rig.mounts.begin() + up);
+  log.scans.erase(log.scans.begin() + up);
+  const MappedVoid mapped = map_void(log, level_path(), {});
+  EXPECT_FALSE(mapped.volume_m3);
+  EXPECT_TRUE(mapped.surface.face.empty());
+}
+
+TEST(Volume, ARigWithoutADownwardLaserMapsWhatLiesAboveTheUpwardOne) {
+  Log log = level_log(load_rig("cart4", 38400), level_path(), 0);
+  const int down = find_view(log.rig, View::down);
+  log.rig.mounts.erase(log.rig.mounts.begin() + down);
+  log.scans.erase(log.scans.begin() + down);
+  const double swept = swept_length(log, find_view(log.rig, View::up), level_path());
+  EXPECT_NEAR(*map_void(log, level_path(), fine()).volume_m3 / (swept * width_m * (height_m - 0.75)), 1, 0.005);
+}
+
+TEST(Volume, OnePointAVoxelStaysAndLiesOnTheWalls) {
+  const Trajectory path = level_path();
+  const Log log = level_log(load_rig("cart4", 38400), path, 0);
+  const PointCloud cloud = map_points(log, path, {});
+  ASSERT_GT(cloud.size(), 1000u);
+  ASSERT_EQ(cloud.stamp_s.size(), cloud.size());
+  ASSERT_EQ(cloud.laser.size(), cloud.size());
+  std::set<std::array<std::int64_t, 3>> voxels;
+  for (size_t n = 0; n < cloud.size(); ++n) {
+    const Vec3& p = cloud.p[n];
+    EXPECT_TRUE(voxels.insert({std::llround(p.x() * 10), std::llround(p.y() * 10), std::llround(p.z() * 10)}).second);
+    const double off = std::min({std::abs(std::abs(p.y()) - width_m / 2), std::abs(p.z()), std::abs(p.z() - height_m),
+                                 std::abs(p.x()), std::abs(p.x() - length_m)});
+    EXPECT_LT(off, 1e-3);
+  }
+}
+
+TEST(Surface, OfSolidsThatTouchAlongEdgesAndCornersIsClosed) {
+  // Boxes of one voxel in a checkerboard, and random ones: the worst cases for a surface between voxels.
+  const Dexels grid = empty_dexels({0, 0}, {2, 2}, 0.1);
+  std::vector<std::vector<Interval>> columns(grid.columns());
+  for (int j = 0; j < grid.height; ++j)
+    for (int i = 0; i < grid.width; ++i)
+      for (int k = 0; k < 20; ++k)
+        if ((i / 2 * 7 + j / 2 * 13 + k / 2 * 29 + (i / 2) * (j / 2) * (k / 2)) % 3 == 0)
+          columns[grid.index(i, j)].push_back({k * 0.1, (k + 1) * 0.1});
+  const Dexels solid = dexels_of(columns, grid);
+  for (const int cells : {1, 2}) {
+    const Mesh surface = boundary_of(solid, cells);
+    EXPECT_GT(surface.face.size(), 100u);
+    EXPECT_EQ(open_edges(surface), 0u) << cells;
+    EXPECT_GT(enclosed_volume(surface), 0);
+  }
+}
+
+TEST(Surface, OfABallHasItsVolumeAndNormalsOutward) {
+  const Mesh ball = sphere_mesh({0.3, 0.2, 0.1}, 1.0, 5);
+  const Dexels solid = dexels_of(ball, empty_dexels({-1, -1}, {2, 2}, 0.04));
+  const Mesh surface = boundary_of(solid, 2);
+  EXPECT_EQ(open_edges(surface), 0u);
+  EXPECT_NEAR(enclosed_volume(surface) / solid.volume_m3(), 1, 0.01);
+  for (size_t f = 0; f < surface.face.size(); ++f) {
+    const Vec3 middle = (surface.corner(f, 0) + surface.corner(f, 1) + surface.corner(f, 2)) / 3 - Vec3(0.3, 0.2, 0.1);
+    EXPECT_NEAR(middle.norm(), 1, 0.04);  // half a voxel
+    if (surface.area(f) > 1e-5) {
+      EXPECT_GT(surface.normal(f).dot(middle.normalized()), 0.5);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace adit
