@@ -20,16 +20,17 @@ std::string place_name(const Vec3& p) {
   return text;
 }
 
-// Faces are seen from their inner side by a laser in the open; one in the rock sees most of them from behind.
+// A laser in the open sees the inner side of the rock all around; one in the rock sees it from behind, or nothing.
 void check_open(const Caster& caster, const Pose& X_WB, const Mount& mount) {
   const Pose X_WS = X_WB * mount.X_BS;
-  int behind = 0;
+  int before = 0, behind = 0;
   for (const Vec3& d : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
     const Ray ray{X_WS.translation(), X_WS.linear() * d};
     const Hit hit = caster.nearest(ray);
-    behind += hit.face >= 0 && caster.mesh().normal(static_cast<size_t>(hit.face)).dot(ray.direction) < 0;
+    if (hit.face < 0) continue;
+    ++(caster.mesh().normal(static_cast<size_t>(hit.face)).dot(ray.direction) < 0 ? behind : before);
   }
-  if (behind > 3)
+  if (behind > before)
     throw Error("laser '" + mount.name + "' starts inside the rock at " + place_name(X_WS.translation()) +
                 " m in W; lower its mount or begin the drive elsewhere");
 }
