@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/config.h"
+#include "base/progress.h"
+#include "base/recording.h"
+
+#include <string>
+#include <vector>
+
+namespace adit {
+
+struct TiltSettings {
+  double knot_s = 0.2;         // of the spline while the vehicle moves
+  double rest_knot_s = 2;      // and while it stands
+  double node_m = 0.25;        // lattice of the floor's and the roof's heights
+  double spacing_m = 0.15;     // beams of a scan are thinned to this distance on the rock
+  double forward_m = 6;        // use of the forward vertical laser, horizontally
+  double sideways_m = 4;       // use of the upward and downward lasers, horizontally
+  double sigma_m = 0.02;       // of a beam against the lattice: roughness between the nodes and noise
+  double kernel = 2.5;         // width of the robust kernel in sigmas
+  double curvature_m = 0.05;   // prior sd of the second difference of neighbouring nodes
+  double rib_sigma_deg = 4;    // trust in a rib being vertical, for one rib in one scan; 0 = none
+  double bias_sigma_m = 0.01;  // prior sd of each laser's constant range error; 0 = taken as none
+  int iterations = 4;
+};
+Fields fields(TiltSettings& s);
+
+/// The path with its height, pitch and roll.
+struct TiltSolution {
+  Trajectory path;                   // X_MB at the stamps that were given
+  Trajectory dense;                  // the same motion every 20 ms within them: what beams between the stamps need
+  std::vector<double> range_bias_m;  // (lasers) estimated, measured minus true; 0 where not estimated
+  double rms_m = 0;                  // of the residuals of floor and roof, weighted by the kernel
+  double factor_operations = 0;      // of one factorisation
+  std::string note;                  // why the path stayed planar; empty otherwise
+};
+
+/// Height, pitch and roll of the body from its planar path and the vertical lasers: ONE sparse least squares whose
+/// unknowns are a cubic spline in time for z, pitch and roll, the heights of floor and roof on a lattice in plan
+/// (bilinear between nodes, curvature prior) and a constant range error of each laser. Each beam that meets floor or
+/// roof is one equation, at its own instant; all lasers and all visits meet in the same nodes, so loops in height close
+/// by themselves. Ribs count as vertical with rib_sigma_deg: that holds roll. Solved by Gauss-Newton with a Cauchy
+/// kernel.
+/// @param stamp_s  (n) of the horizontal laser, rising;  @param planar  (n) X_MB of the body, level
+/// x and y: what the planar poses fix is where the horizontal laser stands; the body moves under it as it pitches and
+/// rolls. The tilt of the whole is a gauge without gravity: the ribs fix it, else the start counts as level. A rig with
+/// neither a forward vertical nor a downward laser keeps the planar path, level at z = 0, and says so in `note`.
+TiltSolution solve_tilt(const Log& log, const std::vector<double>& stamp_s, const std::vector<Pose2>& planar,
+                        const TiltSettings& settings, const Progress& progress = {});
+
+/// The path of solve_tilt alone.
+Trajectory estimate_tilt(const Log& log, const std::vector<double>& stamp_s, const std::vector<Pose2>& planar,
+                         const TiltSettings& settings, const Progress& progress = {});
+
+}  // namespace adit

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
+#include "base/rig.h"
+#include "base/rng.h"
+#include "mapper/least_squares.h"
+#include "mapper/spline.h"
+#include "mapper/tilt.h"
+#include "tests/support/shapes.h"
+#include "tests/support/tube_log.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace adit {
+namespace {
+
+constexpr double deg = std::numbers::pi / 180;
+
+/// The true path as a planar mapper would give it: level poses that put the horizontal laser where it truly stands.
+struct Planar {
+  std::vector<double> stamp_s;
+  std::vector<Pose2> pose;
+};
+
+Planar planar_of(const Log& log, const Trajectory& truth, double noise_m = 0) {
+  const int horizontal = find_view(log.rig, View::horizontal);
+  const Vec3 p_BH = log.rig.mounts[horizontal].X_BS.translation();
+  const Pose2 X_MW = flatten(truth.at(log.scans[horizontal].stamp_s.front())).inverse();
+  Planar planar;
+  for (size_t n = 0; n < log.scans[horizontal].size(); ++n) {
+    const double t = log.scans[horizontal].stamp_s[n];
+    const Pose X_WB = truth.at(t);
+    Pose2 level = flatten(X_WB);
+    const Vec2 shift = (X_WB * p_BH).head<2>() - level * Vec2(p_BH.head<2>());
+    level.x_m += shift.x() + noise_m * normal(5, Draw::test, n, 0);
+    level.y_m += shift.y() + noise_m * normal(5, Draw::test, n, 1);
+    level.yaw_rad += noise_m * normal(5, Draw::test, n, 2);
+    planar.stamp_s.push_back(t);
+    planar.pose.push_back(X_MW * level);
+  }
+  return planar;
+}
+
+/// Errors of z, pitch and roll after the mean of each is taken off (the gauge), as rms.
+struct TiltError {
+  double z_m, pitch_deg, roll_deg;
+};
+
+/// With the best-fitting plane taken off z, pitch and roll: whatever the gauge leaves open.
+TiltError error_of(const Trajectory& estimate, const Trajectory& truth) {
+  const size_t n = estimate.size();
+  // Small errors: X_true = tilt about some axis * X_estimate; unknown (a, b, c): dz = c + a x + b y, and the slopes.
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  Vec3 g = Vec3::Zero();
+  std::vector<Vec3> off(n), place(n);
+  for (size_t k = 0; k < n; ++k) {
+    const Pose X = truth.at(estimate.stamp_s[k]);
+    const YawPitchRoll a = yaw_pitch_roll(X.linear()), b = yaw_pitch_roll(estimate.X_WB[k].linear());
+    off[k] = {X.translation().z() - estimate.X_WB[k].translation().z(), a.pitch_rad - b.pitch_rad,
+              a.roll_rad - b.roll_rad};
+    place[k] = {estimate.X_WB[k].translation().x(), estimate.X_WB[k].translation().y(), b.yaw_rad};
+    const Vec3 row(place[k].x(), place[k].y(), 1);
+    H += row * row.transpose();
+    g += row * off[k][0];
+  }
+  Vec3 plane = H.ldlt().solve(g);
+  if (H(1, 1) < 1)
+    plane = Vec3(
+        (Eigen::Matrix2d() << H(0, 0), H(0, 2), H(2, 0), H(2, 2)).finished().inverse().row(0).dot(Vec2(g[0], g[2])), 0,
+        0),
+    plane[2] = (g[2] - plane[0] * H(0, 2)) / H(2, 2);
+  Vec3 sum = Vec3::Zero();
+  for (size_t k = 0; k < n; ++k) {
+    const double c = std::cos(place[k].z()), s = std::sin(place[k].z());
+    const double dz = off[k][0] - plane.dot(Vec3(place[k].x(), place[k].y(), 1));
+    const double dpitch = off[k][1] + (plane[0] * c + plane[1] * s), droll = off[k][2] - (-plane[0] * s + plane[1] * c);
+    sum += Vec3(dz * dz, dpitch * dpitch, droll * droll);
+  }
+  sum = (sum / static_cast<double>(n)).cwiseSqrt();
+  return {sum[0], sum[1] / deg, sum[2] / deg};
+}
+
+TEST(LeastSquares, SolvesAnOverdeterminedSystemAndNamesASingularOne) {
+  // y = 2 + 3 t through exact points, and one unknown that nothing holds.
+  SparseRows rows;
+  rows.unknowns = 2;
+  for (int t = 0; t < 5; ++t) {
+    rows.column.insert(rows.column.end(), {0, 1});
+    rows.value.insert(rows.value.end(), {1.0, static_cast<double>(t)});
+    rows.offset.push_back(static_cast<int>(rows.column.size()));
+    rows.right.push_back(2 + 3.0 * t);
+  }
+  const SparseSolution solution = solve_least_squares(rows);
+  EXPECT_NEAR(solution.x[0], 2, 1e-12);
+  EXPECT_NEAR(solution.x[1], 3, 1e-12);
+  rows.unknowns = 3;
+  EXPECT_THROW(solve_least_squares(rows), Error);
+}
+
+TEST(KnotClock, WeightsSumToOneAndKnotsAreSparseAtRest) {
+  std::vector<double> stamps;
+  std::vector<bool> moving;
+  for (int n = 0; n <= 100; ++n) {
+    stamps.push_back(0.2 * n);
+    moving.push_back(n < 50);
+  }
+  const KnotClock clock(stamps, moving, 0.2, 2);
+  EXPECT_EQ(clock.controls(), 50 + 5 + 4);
+  for (double t = 0; t <= 20; t += 0.037) {
+    const SplineWeights w = clock.at(t);
+    EXPECT_NEAR(w.weight[0] + w.weight[1] + w.weight[2] + w.weight[3], 1, 1e-12);
+    EXPECT_GE(w.first, 0);
+    EXPECT_LE(w.first + 4, clock.controls());
+  }
+  EXPECT_EQ(clock.at(19.9).first - clock.at(10.1).first, 4);
+}
+
+TEST(PlanarMotion, FollowsATurningVehicleBetweenItsStampsAcrossTheCutOfYaw) {
+  const auto truth = [](double t) {
+    return Pose2{2 * std::cos(0.5 * t), 2 * std::sin(0.5 * t), wrap_angle(0.5 * t + 1.57)};
+  };
+  std::vector<double> stamps;
+  std::vector<Pose2> poses;
+  for (int n = 0; n < 40; ++n) {
+    stamps.push_back(0.2 * n);
+    poses.push_back(truth(0.2 * n));
+  }
+  const PlanarMotion motion(stamps, poses);
+  for (double t = 0.2; t < 7.6; t += 0.03) {
+    const Pose2 error = truth(t).inverse() * motion.at(t);
+    EXPECT_LT(error.position().norm(), 1e-4);  // 2 m * (0.1 rad)^3 / 24, slopes by differences
+    EXPECT_LT(std::abs(error.yaw_rad), 1e-9);
+  }
+}
+
+TEST(Tilt, OfAShakenCartInASmoothLevelTunnelIsFoundToAFewHundredthsOfADegree) {
+  Ride ride;
+  ride.pitch_deg = 2, ride.roll_deg = 1, ride.heave_m = 0.01;
+  const Trajectory truth = ride_along(straight_line(2, 32), {}, ride);
+  const Log log = tube_log(fine_box_mesh({0, -1.85, 0}, {36, 1.85, 1.9}, 5), load_rig("cart4", 38400), truth, 0.005, 1);
+  const Planar planar = planar_of(log, truth);
+  const TiltSolution solution = solve_tilt(log, planar.stamp_s, planar.pose, {});
+  const TiltError error = error_of(solution.path, truth);
+  EXPECT_LT(error.z_m, 0.02);
+  EXPECT_LT(error.pitch_deg, 0.2);
+  EXPECT_LT(error.roll_deg, 0.2);
+  EXPECT_TRUE(solution.note.empty());
+  // What beams between the stamps need: the same motion at any time. Linear between poses 20 ms apart.
+  EXPECT_LT(error_of(solution.dense, truth).pitch_deg, 0.2);
+}
+
+TEST(Tilt, OfARoughRingThatRollsByMetresCloses) {
+  Ground ground;
+  ground.roll_m = 0.15, ground.rough_m = 0.03;
+  Ride ride;
+  ride.pitch_deg = 1.5, ride.roll_deg = 1, ride.heave_m = 0.01, ride.stop_s = 5;
+  const World ring = ring_world(24, 3.7, 1.9, 0.15);
+  const Trajectory truth = ride_along(ring_line(24, 3.7, 1.7, 1.25), ground, ride);
+  const Log log = tube_log(bent(ring.mesh, ground), load_rig("cart4", 38400), truth, 0.005, 2);
+  const Planar planar = planar_of(log, truth, 0.005);
+  const TiltSolution solution = solve_tilt(log, planar.stamp_s, planar.pose, {});
+  const TiltError error = error_of(solution.path, truth);
+  EXPECT_LT(error.z_m, 0.08);
+  EXPECT_LT(error.pitch_deg, 0.5);
+  EXPECT_LT(error.roll_deg, 0.7);
+}
+
+TEST(Tilt, RangeErrorsOfTheLasersAreFound) {
+  Ride ride;
+  ride.pitch_deg = 1.5;
+  const Trajectory truth = ride_along(straight_line(2, 22), {}, ride);
+  Log log = tube_log(fine_box_mesh({0, -1.85, 0}, {26, 1.85, 1.9}, 5), load_rig("cart4", 38400), truth, 0.003, 3);
+  const int ahead = find_view(log.rig, View::forward_vertical), up = find_view(log.rig, View::up);
+  for (float& r : log.scans[ahead].range_m) r += 0.012F;
+  for (float& r : log.scans[up].range_m) r -= 0.008F;
+  const Planar planar = planar_of(log, truth);
+  const TiltSolution solution = solve_tilt(log, planar.stamp_s, planar.pose, {});
+  EXPECT_NEAR(solution.range_bias_m[ahead], 0.012, 0.004);
+  EXPECT_NEAR(solution.range_bias_m[up], -0.008, 0.004);
+  EXPECT_LT(error_of(solution.path, truth).pitch_deg, 0.25);
+}
+
+TEST(Tilt, StaysPlanarAndSaysSoWhereNoLaserTellsIt) {
+  const Trajectory truth = ride_along(straight_line(2, 6), {}, {});
+  const Log log =
+      tube_log(fine_box_mesh({0, -1.85, 0}, {10, 1.85, 1.9}, 5), load_rig("groundhog2", 38400), truth, 0, 4);
+  const Planar planar = planar_of(log, truth);
+  const TiltSolution solution = solve_tilt(log, planar.stamp_s, planar.pose, {});
+  EXPECT_FALSE(solution.note.empty());
+  ASSERT_EQ(solution.path.size(), planar.stamp_s.size());
+  EXPECT_TRUE(solution.path.X_WB.back().isApprox(lift(planar.pose.back())));
+}
+
+}  // namespace
+}  // namespace adit
