@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "mapper/least_squares.h"
+#include "mapper/sparse_solve.h"
 #include "mapper/spline.h"
 #include "mapper/tilt_beams.h"
 

@@ -2,7 +2,7 @@
 #include "base/error.h"
 #include "base/rig.h"
 #include "base/rng.h"
-#include "mapper/least_squares.h"
+#include "mapper/sparse_solve.h"
 #include "mapper/spline.h"
 #include "mapper/tilt.h"
 #include "tests/support/shapes.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapper/least_squares.h"
+#include "mapper/sparse_solve.h"
 
 #include "base/error.h"
 
