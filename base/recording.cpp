@@ -190,10 +190,12 @@ Drive load_drive(const H5Reader& in) {
 ScanTruth load_scan_truth(const H5Reader& in, const std::string& at) {
   const Shape size = in.shape(at + "/range_m");
   ScanTruth truth;
+  if (size.size() != 2) throw Error(in.file() + ": " + at + "/range_m must have two dimensions");
+  truth.stamp_s = in.array<double>(at + "/stamp_s", {size[0]});
   truth.range_m = in.array<float>(at + "/range_m", size);
   truth.label = in.array<std::uint8_t>(at + "/label", size);
   truth.part = in.array<std::int32_t>(at + "/part", size);
-  truth.incidence_rad = in.array<float>(at + "/incidence_rad", size);
+  truth.incidence_rad = in.array<float>(at + "/incidence", size);
   truth.face = in.array<std::int32_t>(at + "/face", size);
   return truth;
 }
@@ -253,10 +255,12 @@ void save_truth(const std::string& file, const Truth& truth) {
       const std::uint64_t beams = static_cast<std::uint64_t>(truth.rig.mounts[i].laser.beams);
       const Shape shape{scans.range_m.size() / beams, beams};
       out.group(at);
+      ADIT_CHECK(scans.stamp_s.size() == shape[0]);
+      out.array<double>(at + "/stamp_s", scans.stamp_s, {scans.stamp_s.size()});
       out.array<float>(at + "/range_m", scans.range_m, shape);
       out.array<std::uint8_t>(at + "/label", scans.label, shape);
       out.array<std::int32_t>(at + "/part", scans.part, shape);
-      out.array<float>(at + "/incidence_rad", scans.incidence_rad, shape);
+      out.array<float>(at + "/incidence", scans.incidence_rad, shape);
       out.array<std::int32_t>(at + "/face", scans.face, shape);
     }
     out.close();
