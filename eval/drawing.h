@@ -28,7 +28,7 @@ struct Disc {
   double radius_px = 4;
   Colour fill = {}, rim = {};
   double rim_px = 0;
-  std::string link, title;  // in SVG: where a click leads, what a pointer reads
+  std::string link = {}, title = {};  // in SVG: where a click leads, what a pointer reads
 };
 struct Words {
   Vec2 at;  // left, middle or right of the base line
@@ -55,6 +55,9 @@ struct Drawing {
 std::string to_svg(const Drawing& drawing, const std::string& alt);
 /// The drawing `scale` times as large, anti-aliased.
 Picture to_picture(const Drawing& drawing, double scale = 1);
+
+/// Many discs as one layer over a rectangle, which keeps an SVG small.
+Layer flattened(const std::vector<Disc>& discs, const Vec2& low, const Vec2& high, double scale = 1.5);
 
 /// Text that may stand between tags or in a quoted attribute.
 std::string escaped(const std::string& text);

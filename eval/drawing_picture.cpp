@@ -120,13 +120,15 @@ void draw(Picture& picture, const Area& area, double scale) {
 
 void draw(Picture& picture, const Disc& disc, double scale) {
   const Vec2 c = scale * disc.centre;
-  const auto ball = [&](double radius, Colour colour) {
-    Mask mask(picture.width, picture.height, c - Vec2::Constant(radius + 1), c + Vec2::Constant(radius + 1));
-    cover_segment(mask, c, c, radius);
-    mask.lay(picture, colour);
-  };
-  if (disc.rim_px > 0) ball(scale * (disc.radius_px + disc.rim_px / 2), disc.rim);
-  if (disc.fill.a > 0) ball(scale * (disc.radius_px - disc.rim_px / 2), disc.fill);
+  const double outer = scale * (disc.radius_px + disc.rim_px / 2), inner = scale * (disc.radius_px - disc.rim_px / 2);
+  const Vec2 reach = Vec2::Constant(outer + 1);
+  Mask ring(picture.width, picture.height, c - reach, c + reach), core = ring;
+  cover_segment(ring, c, c, outer);
+  cover_segment(core, c, c, inner);
+  for (int y = ring.y0(); y < ring.y1(); ++y)
+    for (int x = ring.x0(); x < ring.x1(); ++x) ring.at(x, y) -= core.at(x, y);
+  if (disc.rim_px > 0) ring.lay(picture, disc.rim);
+  core.lay(picture, disc.fill);
 }
 
 void draw(Picture& picture, const Words& words, double scale) {
@@ -161,6 +163,18 @@ void draw(Picture& picture, const Layer& layer, double scale) {
 }
 
 }  // namespace
+
+Layer flattened(const std::vector<Disc>& discs, const Vec2& low, const Vec2& high, double scale) {
+  Drawing drawing;
+  drawing.width_px = high.x() - low.x();
+  drawing.height_px = high.y() - low.y();
+  drawing.background = {255, 255, 255, 0};
+  for (Disc disc : discs) {
+    disc.centre -= low;
+    drawing.add(std::move(disc));
+  }
+  return {to_picture(drawing, scale), low, high};
+}
 
 Picture to_picture(const Drawing& drawing, double scale) {
   Picture picture(static_cast<int>(std::lround(scale * drawing.width_px)),

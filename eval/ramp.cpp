@@ -41,10 +41,10 @@ Colour diverging(double s) {
   return colour_of(lab_of_msh(m + t * (white - m), saturation * (1 - t), hue + t * (hue_white - hue)));
 }
 
-// Knots of cividis at even steps.
+// Knots of ColorBrewer's YlOrBr at even steps, without its palest.
 Colour sequential(double s) {
-  constexpr std::array<std::uint32_t, 11> knot = {0x00224E, 0x123570, 0x3B496C, 0x575D6D, 0x707173, 0x8A8678,
-                                                  0xA59C74, 0xC3B369, 0xE1CC55, 0xF2DC44, 0xFEE838};
+  constexpr std::array<std::uint32_t, 8> knot = {0xFFF7BC, 0xFEE391, 0xFEC44F, 0xFE9929,
+                                                 0xEC7014, 0xCC4C02, 0x993404, 0x662506};
   const double at = std::clamp(s, 0.0, 1.0) * (knot.size() - 1);
   const auto k = std::min<size_t>(static_cast<size_t>(at), knot.size() - 2);
   return mix(rgb(knot[k]), rgb(knot[k + 1]), at - static_cast<double>(k));

@@ -10,8 +10,8 @@ namespace adit {
 
 /// Colours of a quantity. Both kinds are perceptually even and can be told apart by colour-blind people.
 /// diverging: blue - light grey - red (Moreland, "Diverging color maps for scientific visualization", ISVC 2009);
-/// sequential: cividis (Nunez, Anderton, Renslow, "Optimizing colormaps with consideration for color vision
-/// deficiency", PLOS ONE 2018).
+/// sequential: pale yellow - orange - dark brown (Harrower and Brewer, "ColorBrewer.org", The Cartographic Journal
+/// 2003).
 struct Ramp {
   enum class Kind { diverging, sequential };
   Kind kind = Kind::diverging;

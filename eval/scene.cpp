@@ -73,6 +73,14 @@ Skin tube(const std::vector<Vec3>& line, double radius_m, Colour colour) {
   return skin;
 }
 
+void append(Skin& skin, const Skin& more) {
+  const auto base = static_cast<std::uint32_t>(skin.p.size());
+  skin.p.insert(skin.p.end(), more.p.begin(), more.p.end());
+  skin.normal.insert(skin.normal.end(), more.normal.begin(), more.normal.end());
+  skin.colour.insert(skin.colour.end(), more.colour.begin(), more.colour.end());
+  for (const auto& f : more.face) skin.face.push_back({f[0] + base, f[1] + base, f[2] + base});
+}
+
 void add_ball(Skin& skin, const Vec3& centre, double radius_m, Colour colour) {
   constexpr int rings = 10, sectors = 20;
   const auto base = static_cast<std::uint32_t>(skin.p.size());

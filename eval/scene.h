@@ -56,6 +56,8 @@ Skin skin_of(const Mesh& mesh, const std::function<Colour(std::uint32_t, Label)>
              const std::function<bool(size_t)>& keep = {});
 /// A tube of eight sides around a line.
 Skin tube(const std::vector<Vec3>& line, double radius_m, Colour colour);
+/// Adds the triangles of `more`.
+void append(Skin& skin, const Skin& more);
 /// Adds a ball.
 void add_ball(Skin& skin, const Vec3& centre, double radius_m, Colour colour);
 

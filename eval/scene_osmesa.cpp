@@ -86,14 +86,14 @@ void main() {
     if (dot(n, to_eye) < 0.0) n = -n;
     float head = dot(n, to_eye);
     if (headlamp) {
-      light = 0.10 + 1.05 * pow(head, 0.8);
+      light = 0.25 + 0.75 * pow(head, 0.8);
     } else {
       float sky = 0.5 + 0.5 * n.z;
       float key = max(0.0, dot(n, normalize(vec3(-0.5, -0.35, 0.8))));
       light = 0.40 + 0.24 * sky + 0.22 * key + 0.24 * head;
     }
   }
-  if (headlamp) light *= 1.6 / (1.0 + pow(distance_m / lamp, 1.6));
+  if (headlamp) light *= (rock > 0.0 ? 1.7 : 1.02) / (1.0 + pow(distance_m / lamp, 1.6));
   colour = vec4(min(base * light + gloss, vec3(1.0)), 1.0);
 })";
 

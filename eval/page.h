@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "eval/exhibit.h"
+
+#include <string>
+#include <vector>
+
+namespace adit {
+
+/// One number of the first screen.
+struct KeyNumber {
+  std::string label, value, unit, note;
+};
+/// The six numbers that say most, each with what it is made of; "–" and the reason where one could not be had.
+std::vector<KeyNumber> key_numbers(const ReportInput& input);
+/// What was mapped, how good it is and where it is worst, in one or two plain sentences.
+std::string verdict(const ReportInput& input);
+
+/// A figure as it stands on the page: the drawing as SVG, and one for narrow screens where there is one.
+struct Plate {
+  Figure figure;
+  std::string svg, narrow_svg;
+};
+/// What stands together under one heading.
+struct Chapter {
+  std::string id, title;
+  std::vector<Plate> plates;
+  bool side_by_side = false;
+};
+
+/// The whole page.
+std::string page_html(const ReportInput& input, const Plate& hero, const std::vector<Chapter>& chapters);
+
+}  // namespace adit

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace adit {
+
+/// The page's style sheet: light and dark, one column when narrow, printable.
+inline constexpr const char* page_style = R"css(
+:root { color-scheme: light dark; --ground: #ffffff; --panel: #f4f5f7; --ink: #1b1d22; --faint: #5b606b; --rule: #d9dce2; --link: #0b57a4; }
+@media (prefers-color-scheme: dark) {
+  :root { --ground: #15171b; --panel: #1f2228; --ink: #e8eaee; --faint: #a4aab6; --rule: #363b45; --link: #7db8f5; }
+}
+* { box-sizing: border-box; }
+html { scroll-behavior: smooth; }
+@media (prefers-reduced-motion: reduce) { html { scroll-behavior: auto; } }
+body { margin: 0; background: var(--ground); color: var(--ink); font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif; }
+a { color: var(--link); }
+:focus-visible { outline: 3px solid var(--link); outline-offset: 2px; }
+.skip { position: absolute; left: -99em; }
+.skip:focus { left: 1em; top: 1em; background: var(--ground); padding: .5em; z-index: 2; }
+header, main, footer { max-width: 1500px; margin: 0 auto; padding: 0 24px; }
+header { padding-top: 20px; }
+h1 { font-size: 1.15rem; margin: 0 0 .3em; color: var(--faint); font-weight: 600; overflow-wrap: anywhere; }
+h2 { font-size: 1.4rem; margin: 2.2em 0 .6em; padding-top: .6em; border-top: 1px solid var(--rule); }
+h3 { font-size: 1.05rem; margin: 0 0 .4em; }
+.verdict { font-size: 1.25rem; line-height: 1.4; margin: 0 0 .9em; font-weight: 500; text-wrap: pretty; }
+.first { display: grid; grid-template-columns: minmax(300px, 27%) 1fr; gap: 24px; align-items: start; }
+.numbers { display: grid; grid-template-columns: 1fr 1fr; gap: 10px; margin: 0; }
+.numbers div { background: var(--panel); border-radius: 8px; padding: 10px 12px; }
+.numbers dt { font-size: .82rem; color: var(--faint); line-height: 1.25; }
+.numbers dd { margin: 0; }
+.numbers .value { font-size: 1.6rem; font-weight: 650; line-height: 1.3; font-variant-numeric: tabular-nums; }
+.numbers .unit { font-size: 1rem; font-weight: 500; color: var(--faint); }
+.numbers .note { font-size: .76rem; color: var(--faint); line-height: 1.3; display: block; }
+nav { margin: 1em 0 0; font-size: .95rem; display: flex; flex-wrap: wrap; gap: .3em 1.1em; }
+figure { margin: 0 0 1.6em; }
+figure svg { display: block; width: 100%; height: auto; border-radius: 8px; font-family: "DejaVu Sans", Verdana, system-ui, sans-serif; }
+figure svg a:focus-visible circle { stroke: #0b57a4; stroke-width: 5; }
+figcaption { font-size: .9rem; color: var(--faint); margin-top: .5em; max-width: 95ch; }
+.narrow { display: none; }
+.trio { display: grid; grid-template-columns: repeat(3, 1fr); gap: 16px; }
+.missing { background: var(--panel); border-radius: 8px; padding: 1em 1.2em; color: var(--faint); }
+table { border-collapse: collapse; font-size: .9rem; width: 100%; font-variant-numeric: tabular-nums; }
+th, td { text-align: left; padding: .28em .8em .28em 0; border-bottom: 1px solid var(--rule); vertical-align: top; }
+th { color: var(--faint); font-weight: 600; }
+td.n, th.n { text-align: right; white-space: nowrap; }
+td code { overflow-wrap: anywhere; }
+summary { cursor: pointer; font-weight: 600; padding: .4em 0; }
+pre { background: var(--panel); border-radius: 8px; padding: 1em; overflow-x: auto; font-size: .82rem; line-height: 1.45; }
+.scroll { overflow-x: auto; }
+footer { margin: 3em auto 2em; color: var(--faint); font-size: .85rem; }
+@media (max-width: 1000px) { .first { grid-template-columns: 1fr; } .numbers { grid-template-columns: repeat(3, 1fr); } .trio { grid-template-columns: 1fr; } }
+@media (max-width: 620px) {
+  header, main, footer { padding-left: 14px; padding-right: 14px; }
+  .verdict { font-size: 1.08rem; }
+  .numbers { grid-template-columns: 1fr 1fr; }
+  .numbers .value { font-size: 1.35rem; }
+  .has-narrow .wide { display: none; }
+  .has-narrow .narrow { display: block; }
+  .plate { overflow-x: auto; }
+  .plate.big svg { min-width: 680px; }
+}
+@media print { nav, .skip { display: none; } figure, tr, .numbers div { break-inside: avoid; } body { font-size: 11pt; } details > * { display: block; } }
+)css";
+
+}  // namespace adit

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/render.h"
+
+#include "base/error.h"
+#include "eval/exhibit.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace adit {
+
+namespace {
+
+constexpr int most_numbered = 20;
+
+const std::vector<std::pair<std::string, std::function<Figure(const Exhibit&)>>>& views() {
+  static const std::vector<std::pair<std::string, std::function<Figure(const Exhibit&)>>> all = {
+      {"plan", error_plan},      {"truth", truth_plan}, {"raw", raw_plan},           {"aligned", aligned_plan},
+      {"rounds", rounds_plan},   {"grid", grid_plan},   {"closures", closures_plan}, {"cutaway", cutaway_view},
+      {"chamber", chamber_view}, {"tilt", tilt_section}};
+  return all;
+}
+
+// The number of "interior-3" where the stem fits; 0 otherwise.
+int number_after(const std::string& view, const std::string& stem) {
+  if (!view.starts_with(stem)) return 0;
+  for (int k = 1; k <= most_numbered; ++k)
+    if (view == stem + std::to_string(k)) return k;
+  return 0;
+}
+
+Figure view_of_name(const std::string& name, const Exhibit& exhibit) {
+  for (const auto& [known, make] : views())
+    if (known == name) return make(exhibit);
+  if (const int k = number_after(name, "interior-")) return interior_view(exhibit, k - 1);
+  return spot_view(exhibit, number_after(name, "spot-") - 1);
+}
+
+bool exists(const std::string& name) {
+  return std::any_of(views().begin(), views().end(), [&](const auto& v) { return v.first == name; }) ||
+         number_after(name, "interior-") || number_after(name, "spot-");
+}
+
+}  // namespace
+
+std::vector<std::string> view_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, make] : views()) names.push_back(name);
+  for (const std::string stem : {"interior-", "spot-"})
+    for (int k = 1; k <= 3; ++k) names.push_back(stem + std::to_string(k));
+  return names;
+}
+
+Picture render_view(const std::string& view, const ReportInput& input, const ReportSettings& settings) {
+  if (!exists(view)) {
+    std::string known;
+    for (const std::string& name : view_names()) known += (known.empty() ? "" : ", ") + name;
+    throw Error("view '" + view + "': there is none of that name; there are " + known);
+  }
+  ReportSettings all = settings;
+  all.places = std::max(all.places, number_after(view, "spot-"));
+  all.interiors = std::max(all.interiors, number_after(view, "interior-"));
+  const Figure made = view_of_name(view, make_exhibit(input, all));
+  if (!made.missing.empty()) throw Error("view '" + view + "': " + made.missing);
+  return to_picture(made.drawing);
+}
+
+}  // namespace adit
