@@ -29,6 +29,7 @@ struct Log {
 
 /// What each beam of one laser truly met. Arrays are (n x beams), as in Scans.
 struct ScanTruth {
+  std::vector<double> stamp_s;         // (n) when the scan's first turn truly began; beam k leaves beam_offset_s(k) later
   std::vector<float> range_m;          // exact, along the true beam; +inf where nothing is met
   std::vector<std::uint8_t> label;     // Label
   std::vector<std::int32_t> part;      // of the face met

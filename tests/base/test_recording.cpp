@@ -71,6 +71,7 @@ Truth small_truth() {
   }
   for (const Mount& mount : truth.rig.mounts) {
     ScanTruth s;
+    s.stamp_s = {0.1, 0.3, 0.5, 0.8};
     for (int i = 0; i < 4 * mount.laser.beams; ++i) {
       s.range_m.push_back(i == 3 ? none : 0.37f * i);
       s.label.push_back(static_cast<std::uint8_t>(i % 7));
@@ -148,6 +149,7 @@ TEST(Recording, ATruthComesBackAsItWas) {
   for (size_t i = 0; i < truth.drive.path.size(); ++i)
     EXPECT_EQ(truth.drive.path.X_WB[i].matrix(), back.drive.path.X_WB[i].matrix());
   for (size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(truth.scans[i].stamp_s, back.scans[i].stamp_s);
     EXPECT_EQ(truth.scans[i].range_m, back.scans[i].range_m);
     EXPECT_EQ(truth.scans[i].label, back.scans[i].label);
     EXPECT_EQ(truth.scans[i].part, back.scans[i].part);
