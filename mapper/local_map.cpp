@@ -4,6 +4,7 @@
 #include "base/error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,8 @@ namespace {
 
 constexpr double index_m = 0.25;  // cell of the index
 constexpr double like = 0.5;      // cosine between normals of one rib
+constexpr double blend_m =
+    0.12;  // reach of the blend of surfels; wider blurs the rock (drift 0.05 % at 0.25 m, 0.03 % here)
 
 struct Bounds {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
@@ -94,26 +97,45 @@ void LocalMap::index() {
   surfel_.swap(sorted);
 }
 
-int LocalMap::nearest(const Vec2& p, const Vec2& normal, double radius_m) const {
-  const auto clamp_x = [&](double x) {
-    return static_cast<int>(std::clamp((x - low_.x()) / index_m, -1.0, width_ + 0.0));
+std::optional<LocalMap::Rib> LocalMap::rib_near(const Vec2& p, const Vec2& normal, double radius_m) const {
+  const double x = (p.x() - low_.x()) / index_m, y = (p.y() - low_.y()) / index_m, reach = radius_m / index_m;
+  if (!(x + reach >= 0 && y + reach >= 0 && x - reach < width_ && y - reach < height_)) return {};
+  const int i0 = std::max(0, static_cast<int>(x - reach)), i1 = std::min(width_ - 1, static_cast<int>(x + reach));
+  const int j0 = std::max(0, static_cast<int>(y - reach)), j1 = std::min(height_ - 1, static_cast<int>(y + reach));
+  struct Near {
+    double d2;
+    const Surfel* surfel;
   };
-  const auto clamp_y = [&](double y) {
-    return static_cast<int>(std::clamp((y - low_.y()) / index_m, -1.0, height_ + 0.0));
-  };
-  const int i0 = std::max(0, clamp_x(p.x() - radius_m)), i1 = std::min(width_ - 1, clamp_x(p.x() + radius_m));
-  const int j0 = std::max(0, clamp_y(p.y() - radius_m)), j1 = std::min(height_ - 1, clamp_y(p.y() + radius_m));
-  int best = -1;
-  double best_d2 = radius_m * radius_m;
-  for (int j = j0; j <= j1 && i0 <= i1; ++j) {
+  std::array<Near, 64> near;  // more in so small a place tell nothing new
+  size_t found = 0;
+  double least = radius_m * radius_m;
+  for (int j = j0; j <= j1; ++j) {
     const size_t row = static_cast<size_t>(j) * width_;
     for (std::int32_t k = start_[row + i0]; k < start_[row + i1 + 1]; ++k) {
-      const double dx = surfel_[k].p.x() - p.x(), dy = surfel_[k].p.y() - p.y();
+      const Surfel& s = surfel_[k];
+      const double dx = s.p.x() - p.x(), dy = s.p.y() - p.y();
       const double d2 = dx * dx + dy * dy;
-      if (d2 < best_d2 && surfel_[k].normal.dot(normal) > like) best_d2 = d2, best = k;
+      if (d2 >= radius_m * radius_m || s.normal.x() * normal.x() + s.normal.y() * normal.y() <= like) continue;
+      if (found < near.size()) near[found++] = {d2, &s};
+      least = std::min(least, d2);
     }
   }
-  return best;
+  if (found == 0) return {};
+  // The blend reaches over a few surfels, farther where they lie sparsely.
+  const double reach2 = std::max(blend_m * blend_m, 2.5 * least);
+  double weight = 0, r = 0, lean = 0, nx = 0, ny = 0;
+  for (size_t k = 0; k < found; ++k) {
+    const double t = 1 - near[k].d2 / reach2;
+    if (t <= 0) continue;
+    const Surfel& s = *near[k].surfel;
+    const double w = t * t;
+    weight += w;
+    r += w * (s.normal.x() * (p.x() - s.p.x()) + s.normal.y() * (p.y() - s.p.y()));
+    nx += w * s.normal.x(), ny += w * s.normal.y();
+    lean += w * s.sigma_normal_rad;
+  }
+  const double length = std::sqrt(nx * nx + ny * ny);
+  return Rib{r / weight, Vec2(nx / length, ny / length), lean / weight, std::sqrt(least)};
 }
 
 }  // namespace adit

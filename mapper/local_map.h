@@ -4,6 +4,7 @@
 #include "mapper/scan_points.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,9 +26,16 @@ class LocalMap {
 
   size_t size() const { return surfel_.size(); }
   const std::vector<Surfel>& surfels() const { return surfel_; }
-  /// Index of the surfel nearest to p within radius_m (<= 1 m) whose normal lies within 60 degrees of `normal`; -1 if
-  /// none.
-  int nearest(const Vec2& p, const Vec2& normal, double radius_m) const;
+  /// The rib near a point: the surface that the surfels about it make together, each weighed by its closeness, so that
+  /// it changes smoothly from place to place (Kolluri, "Provably good moving least squares", SODA 2005).
+  struct Rib {
+    double distance_m;  // of p from the surface, along its normal
+    Vec2 normal;
+    double sigma_normal_rad;
+    double nearest_m;  // to the nearest surfel
+  };
+  /// Surfels within radius_m (<= 1 m) of p whose normals lie within 60 degrees of `normal` count; none: no rib.
+  std::optional<Rib> rib_near(const Vec2& p, const Vec2& normal, double radius_m) const;
 
  private:
   void index();

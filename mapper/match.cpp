@@ -33,22 +33,21 @@ Linear linearise(const ScanPoints& scan, const LocalMap& map, const Pose2& X, do
   for (size_t k = 0; k < scan.size(); ++k) {
     const Vec2 &p = scan.p_B[k], &m = scan.normal_B[k];
     const Vec2 q(X.x_m + c * p.x() - sn * p.y(), X.y_m + sn * p.x() + c * p.y());
-    const int found = map.nearest(q, Vec2(c * m.x() - sn * m.y(), sn * m.x() + c * m.y()), gate_m);
-    if (found < 0) continue;
-    const Surfel& rib = map.surfels()[found];
-    const Vec2 off = q - rib.p;
-    const double r = rib.normal.dot(off);
-    const double along = off.x() * rib.normal.y() - off.y() * rib.normal.x();
-    const double lean = rib.sigma_normal_rad * along;
+    const std::optional<LocalMap::Rib> rib =
+        map.rib_near(q, Vec2(c * m.x() - sn * m.y(), sn * m.x() + c * m.y()), gate_m);
+    if (!rib) continue;
+    const double r = rib->distance_m;
+    const double lean = rib->sigma_normal_rad * rib->nearest_m;
     const double var = scan.sigma_m[k] * scan.sigma_m[k] + map_var + lean * lean;
     const double chi2 = r * r / var;
     const double root_w = 1 / (1 + chi2 / robust_var);  // Geman-McClure
     const double w = root_w * root_w;
-    const Vec2 n(c * rib.normal.x() + sn * rib.normal.y(), -sn * rib.normal.x() + c * rib.normal.y());
+    const Vec2 n(c * rib->normal.x() + sn * rib->normal.y(), -sn * rib->normal.x() + c * rib->normal.y());
     const Vec3 J(n.x(), n.y(), n.y() * p.x() - n.x() * p.y());
     const Vec3 J_turned(-n.y(), n.x(), n.x() * p.x() + n.y() * p.y());
     out.H.noalias() += (w / var) * J * J.transpose();
-    out.H_noise.noalias() += (w / var * rib.sigma_normal_rad * rib.sigma_normal_rad) * J_turned * J_turned.transpose();
+    out.H_noise.noalias() +=
+        (w / var * rib->sigma_normal_rad * rib->sigma_normal_rad) * J_turned * J_turned.transpose();
     out.g -= (w / var * r) * J;
     out.weights += w;
     out.squares += w * chi2;
@@ -111,9 +110,9 @@ double fine_score(const ScanPoints& scan, const LocalMap& map, const Pose2& X) {
   for (size_t k = 0; k < scan.size(); ++k) {
     const Vec2& m = scan.normal_B[k];
     const Vec2 q = X * scan.p_B[k];
-    const int found = map.nearest(q, Vec2(c * m.x() - s * m.y(), s * m.x() + c * m.y()), 0.4);
-    if (found < 0) continue;
-    const double r = map.surfels()[found].normal.dot(q - map.surfels()[found].p) / 0.1;
+    const std::optional<LocalMap::Rib> rib = map.rib_near(q, Vec2(c * m.x() - s * m.y(), s * m.x() + c * m.y()), 0.4);
+    if (!rib) continue;
+    const double r = rib->distance_m / 0.1;
     sum += std::exp(-r * r / 2);
   }
   return scan.size() > 0 ? sum / static_cast<double>(scan.size()) : 0;
@@ -237,8 +236,10 @@ Match match_scan(const ScanPoints& scan, const LocalMap& map, const Pose2& guess
     if (weak.sigma_m > s.weak_sigma_m) hold_weak(at, weak);
     Vec3 step = solve_step(at, out.X_AB, prior.value_or(PosePrior{}));
     limit(step);
+    if (i >= 8) step *= 0.5;  // pairs that flip to and fro
     out.X_AB = out.X_AB * Pose2{step.x(), step.y(), step.z()};
-    const bool small = step.head<2>().norm() < 2e-4 && std::abs(step.z()) < 2e-5;
+    // Settled: the step is a small part of what the match is uncertain by. Pairs may flip to and fro below that.
+    const bool small = step.dot(at.H * step) < 0.02 || (step.head<2>().norm() < 2e-4 && std::abs(step.z()) < 2e-5);
     settled = small && gate_m <= s.gate_end_m;
     gate_m = std::max(s.gate_end_m, gate_m * (step.head<2>().norm() < 0.02 ? 0.5 : 0.8));
   }
