@@ -1,9 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <cmath>
-#include <cstdarg>
-#include <cstdio>
-
 #include "base/error.h"
 #include "sim/follower.h"
 #include "sim/ground.h"
@@ -11,17 +6,22 @@
 #include "sim/pusher.h"
 #include "sim/sim.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
 namespace adit {
 namespace {
 
 constexpr double lookahead_m = 0.9;
-constexpr double settle_s = 5;             // longest time to come to rest before the drive
-constexpr double patience_s = 5;           // without headway_m in it, a vehicle is stuck
+constexpr double settle_s = 5;    // longest time to come to rest before the drive
+constexpr double patience_s = 5;  // without headway_m in it, a vehicle is stuck
 constexpr double headway_m = 0.1;
-constexpr double stray_m = 1.5;            // off its route, a vehicle is lost
-constexpr double upright = 0.5;            // cosine of the tilt at which it has tipped over
-constexpr double fall_mps = 3;             // a drop of half a metre
-constexpr double still = 2e-3;             // m/s and rad/s
+constexpr double stray_m = 1.5;   // off its route, a vehicle is lost
+constexpr double upright = 0.5;   // cosine of the tilt at which it has tipped over
+constexpr double fall_mps = 1.2;  // no bump that is rolled over lets it down so fast
+constexpr double still = 2e-3;    // m/s and rad/s
 constexpr double still_for_s = 0.25;
 
 std::string say(const char* format, ...) {
@@ -36,7 +36,8 @@ std::string say(const char* format, ...) {
 void check(const DriveSettings& settings) {
   if (settings.step_hz % settings.sample_hz != 0)
     throw Error(say("drive.sample_hz = %d must divide drive.step_hz = %d", settings.sample_hz, settings.step_hz));
-  if (settings.stop_gap_min_m > settings.stop_gap_max_m) throw Error("drive.stop_gap_min_m must not exceed stop_gap_max_m");
+  if (settings.stop_gap_min_m > settings.stop_gap_max_m)
+    throw Error("drive.stop_gap_min_m must not exceed stop_gap_max_m");
   if (settings.stop_min_s > settings.stop_max_s) throw Error("drive.stop_min_s must not exceed stop_max_s");
   if (settings.wobble_min_hz > settings.wobble_max_hz) throw Error("drive.wobble_min_hz must not exceed wobble_max_hz");
 }
@@ -47,8 +48,8 @@ void check_width(const World& world, const Route& route, const Vehicle& vehicle)
       throw Error(say("route: passage %d is not in the world, which has %zu", id, world.passages.size()));
     const double width = world.passages[static_cast<size_t>(id)].width_m;
     if (width < vehicle.width_m())
-      throw Error(say("passage %d is %.2f m wide and %s %.2f m: choose a narrower vehicle or a route around it", id, width,
-                      vehicle.name.c_str(), vehicle.width_m()));
+      throw Error(say("passage %d is %.2f m wide and %s %.2f m: choose a narrower vehicle or a route around it", id,
+                      width, vehicle.name.c_str(), vehicle.width_m()));
   }
 }
 
@@ -56,8 +57,13 @@ void check_width(const World& world, const Route& route, const Vehicle& vehicle)
 class Run {
  public:
   Run(const World& world, const Route& route, const Vehicle& vehicle, const DriveSettings& settings, std::uint64_t seed)
-      : world_(world), vehicle_(vehicle), settings_(settings), step_s_(1.0 / settings.step_hz), follower_(route),
-        pusher_(settings, seed, follower_.length_m()), start_(start(world, vehicle, follower_)),
+      : world_(world),
+        vehicle_(vehicle),
+        settings_(settings),
+        step_s_(1.0 / settings.step_hz),
+        follower_(route),
+        pusher_(settings, seed, follower_.length_m()),
+        start_(start(world, vehicle, follower_)),
         physics_(world.mesh, vehicle, start_, step_s_) {
     drive_.route = route;
     settle();
@@ -83,15 +89,17 @@ class Run {
 
   // Comes to rest on its tyres before the clock starts.
   void settle() {
+    motion_ = physics_.motion();
     for (int k = 0; k < settle_s * settings_.step_hz && !resting_; ++k) {
-      physics_.step({.brake = true});
+      physics_.step(push(vehicle_, {}, 0, motion_, step_s_, hands_));
       motion_ = physics_.motion();
       watch_rest(true);
     }
     const double moved = (motion_.X_WB.translation() - start_.translation()).norm();
     if (!resting_ || moved > 0.2)
-      throw Error(say("%s cannot stand at the start (%.2f, %.2f, %.2f) m: it moved by %.2f m; start in a clear, level place",
-                      vehicle_.name.c_str(), start_.translation().x(), start_.translation().y(), start_.translation().z(), moved));
+      throw Error(say(
+          "%s cannot stand at the start (%.2f, %.2f, %.2f) m: it moved by %.2f m; start in a clear, level place",
+          vehicle_.name.c_str(), start_.translation().x(), start_.translation().y(), start_.translation().z(), moved));
     look();
   }
 
@@ -139,20 +147,23 @@ class Run {
       return end(DriveEnd::stuck, name + say(" strayed %.1f m off its route ", std::abs(guide_.cross_m)) + place(t_s));
     if (t_s - best_s_ > patience_s)
       return end(DriveEnd::stuck, name + " got stuck " + place(t_s) +
-                                      say(": pushed for %.0f s, at last with %.0f N, ", patience_s, effort_.force_N) + touching());
+                                      say(": pushed for %.0f s, at last with %.0f N, ", patience_s, effort_.force_N) +
+                                      touching());
     return false;
   }
 
   std::string place(double t_s) const {
     const Vec3 p = motion_.X_WB.translation();
-    return say("at (%.2f, %.2f, %.2f) m after %.1f s, %.1f m along the route", p.x(), p.y(), p.z(), t_s, drive_.driven_m);
+    return say("at (%.2f, %.2f, %.2f) m after %.1f s, %.1f m along the route", p.x(), p.y(), p.z(), t_s,
+               drive_.driven_m);
   }
 
   std::string touching() const {
     const std::optional<size_t> face = physics_.touched_face();
     if (!face) return "its wheels do not get on";
     std::string what = *face < world_.mesh.label.size() ? label_name(world_.mesh.label[*face]) : "rock";
-    if (*face < world_.mesh.part.size() && world_.mesh.part[*face] >= 0) what += say(" of part %d", world_.mesh.part[*face]);
+    if (*face < world_.mesh.part.size() && world_.mesh.part[*face] >= 0)
+      what += say(" of part %d", world_.mesh.part[*face]);
     return "its frame against the " + what;
   }
 
@@ -206,8 +217,8 @@ Fields fields(DriveSettings& s) {
           {"sample_hz", &s.sample_hz, "poses of the path a second; divides step_hz", 120, 2000}};
 }
 
-Drive drive(const World& world, const Route& route, const Vehicle& vehicle, const DriveSettings& settings, std::uint64_t seed,
-            const Progress& progress) {
+Drive drive(const World& world, const Route& route, const Vehicle& vehicle, const DriveSettings& settings,
+            std::uint64_t seed, const Progress& progress) {
   check(settings);
   check_width(world, route, vehicle);
   if (world.mesh.face.empty()) throw Error("world " + world.name + ": its mesh has no faces");

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/follower.h"
 
+#include "base/error.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include "base/error.h"
 
 namespace adit {
 

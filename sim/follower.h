@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <vector>
-
 #include "base/frames.h"
 #include "base/route.h"
+
+#include <vector>
 
 namespace adit {
 
 /// What the route asks of a vehicle where it is.
 struct Guide {
-  double along_m = 0;           // of the route's length, at the foot of the axle; below 0 before its start
-  double cross_m = 0;           // axle left of the route
-  double curvature = 0;         // 1/m, to steer now; > 0 turns left
-  double curvature_ahead = 0;   // 1/m, greatest of the route in the next metre and a half, without sign
+  double along_m = 0;          // of the route's length, at the foot of the axle; below 0 before its start
+  double cross_m = 0;          // axle left of the route
+  double curvature = 0;        // 1/m, to steer now; > 0 turns left
+  double curvature_ahead = 0;  // 1/m, greatest of the route in the next metre and a half, without sign
 };
 
-/// Keeps a vehicle on its route by pure pursuit of a point ahead (Coulter, "Implementation of the pure pursuit path tracking
-/// algorithm", CMU-RI-TR-92-01). The foot on the route moves along it by small steps only, so that a route may cross itself or
-/// run back along itself.
+/// Keeps a vehicle on its route by pure pursuit of a point ahead (Coulter, "Implementation of the pure pursuit path
+/// tracking algorithm", CMU-RI-TR-92-01). The foot on the route moves along it by small steps only, so that a route may
+/// cross itself or run back along itself.
 class Follower {
  public:
   /// @param route  at least two points; else Error

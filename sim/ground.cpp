@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/ground.h"
 
+#include "base/error.h"
+
 #include <Eigen/LU>
 #include <Eigen/QR>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-
-#include "base/error.h"
 
 namespace adit {
 
@@ -34,8 +35,9 @@ Pose stand_on(const Mesh& floor, const Vehicle& vehicle, const Vec2& p_W, double
     const std::optional<double> z = floor_height_m(floor, p);
     if (z) return *z;
     char text[200];
-    std::snprintf(text, sizeof text, "no floor at (%.2f, %.2f) m: %s %s would stand in rock; start in a passage, off its ribs",
-                  p.x(), p.y(), vehicle.name.c_str(), what.c_str());
+    std::snprintf(text, sizeof text,
+                  "no floor at (%.2f, %.2f) m: %s %s would stand in rock; start in a passage, off its ribs", p.x(),
+                  p.y(), vehicle.name.c_str(), what.c_str());
     throw Error(text);
   };
   Eigen::MatrixXd plane(vehicle.wheels.size(), 3);

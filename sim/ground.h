@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
-
 #include "base/frames.h"
 #include "base/mesh.h"
 #include "sim/vehicle.h"
+
+#include <optional>
 
 namespace adit {
 

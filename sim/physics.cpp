@@ -1,27 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics.h"
 
+#include "base/error.h"
+
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "base/error.h"
-
 namespace adit {
 namespace {
 
 constexpr double gravity_mps2 = 9.81;
 constexpr double brake_Nm = 80;
+constexpr int rolling_iterations = 20, braked_iterations = 100;  // held wheels make a stiff chain from rock to frame
 constexpr double same_surface_m = 1e-3;  // a contact this far above a deeper one's plane is a surface of its own
-constexpr double sideways = 0.57;        // sine of the steepest side slope that a tyre stands on; beyond, a wheel has no flank
+constexpr double sideways =
+    0.57;  // sine of the steepest side slope that a tyre stands on; beyond, a wheel has no flank
 constexpr int rock_group = 1, vehicle_group = 4;  // not 2: Bullet's static group shuns it
 constexpr int wheel_index = 1, frame_index = 2;
 constexpr int part_faces = 1 << 20;  // Bullet's triangle index has 21 bits within a part
 
-btVector3 bt(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-Vec3 vec(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+btVector3 bt(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+Vec3 vec(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 btTransform bt(const Pose& X) {
   const Eigen::Quaterniond q(X.linear());
   return btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), bt(Vec3(X.translation())));
@@ -34,14 +40,16 @@ Pose pose(const btTransform& t) {
   return X;
 }
 
-// Drops the contacts of a ball that are none: those on edges that a deeper contact's plane already holds up, and those at its
-// flanks, where a wheel has no tread.
+// Drops the contacts of a ball that are none: those on edges that a deeper contact's plane already holds up, and those
+// at its flanks, where a wheel has no tread.
 void keep_true_contacts(btPersistentManifold& manifold, const btVector3& axle) {
   const auto depth = [&](int i) { return manifold.getContactPoint(i).getDistance(); };
   for (int i = manifold.getNumContacts() - 1; i >= 0; --i)
     if (std::abs(manifold.getContactPoint(i).m_normalWorldOnB.dot(axle)) > sideways) manifold.removeContactPoint(i);
   const bool wheel_is_a = manifold.getBody0()->getUserIndex() == wheel_index;
-  const auto on_rock = [&](const btManifoldPoint& p) { return wheel_is_a ? p.m_positionWorldOnB : p.m_positionWorldOnA; };
+  const auto on_rock = [&](const btManifoldPoint& p) {
+    return wheel_is_a ? p.m_positionWorldOnB : p.m_positionWorldOnA;
+  };
   for (int i = manifold.getNumContacts() - 1; i >= 0; --i) {
     const btManifoldPoint& mine = manifold.getContactPoint(i);
     bool held = false;
@@ -75,7 +83,9 @@ class Mine : public btDiscreteDynamicsWorld {
 };
 
 // A resistance that grows to its full value within half a radian per second, so that it never turns a wheel by itself.
-btVector3 bearing_moment(const btVector3& spin, double bearing_Nm) { return spin * (-bearing_Nm / (spin.length() + 0.5)); }
+btVector3 bearing_moment(const btVector3& spin, double bearing_Nm) {
+  return spin * (-bearing_Nm / (spin.length() + 0.5));
+}
 
 }  // namespace
 
@@ -97,8 +107,8 @@ struct Physics::Impl {
 
   Impl(const Mesh& mesh, const Vehicle& vehicle_, const Pose& X_WB, double step) : vehicle(vehicle_), step_s(step) {
     world.setGravity({0, 0, -gravity_mps2});
-    world.getSolverInfo().m_numIterations = 20;
-    world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION;
+    world.getSolverInfo().m_solverMode |=
+        SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION;
     add_rock(mesh);
     add_frame(X_WB);
     for (const Wheel& wheel : vehicle.wheels) add_wheel(wheel, X_WB);
@@ -137,7 +147,8 @@ struct Physics::Impl {
   double hub_height_m(const Wheel& wheel) const {
     // Load shared between front and rear as the centre of mass asks; equal within an axle.
     double front = -1e9, back = 1e9;
-    for (const Wheel& w : vehicle.wheels) front = std::max(front, w.position_B.x()), back = std::min(back, w.position_B.x());
+    for (const Wheel& w : vehicle.wheels)
+      front = std::max(front, w.position_B.x()), back = std::min(back, w.position_B.x());
     const double middle = 0.5 * (front + back);
     int at_end = 0;
     for (const Wheel& w : vehicle.wheels) at_end += (w.position_B.x() > middle) == (wheel.position_B.x() > middle);
@@ -213,6 +224,7 @@ Physics::~Physics() = default;
 
 void Physics::step(const Effort& effort) {
   impl_->apply(effort);
+  impl_->world.getSolverInfo().m_numIterations = effort.brake ? braked_iterations : rolling_iterations;
   impl_->world.stepSimulation(impl_->step_s, 0);  // exactly one step of this length
 }
 

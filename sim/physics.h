@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
-#include <optional>
-
 #include "base/frames.h"
 #include "base/mesh.h"
 #include "sim/vehicle.h"
+
+#include <memory>
+#include <optional>
 
 namespace adit {
 
@@ -20,11 +20,12 @@ struct Effort {
 /// Where a vehicle is and how it moves.
 struct Motion {
   Pose X_WB = Pose::Identity();
-  Vec3 v_W = Vec3::Zero();      // of B's origin
+  Vec3 v_W = Vec3::Zero();  // of B's origin
   Vec3 omega_W = Vec3::Zero();
 };
 
-/// A vehicle on its wheels in a mine: rigid frame, sprung tyres, friction, gravity 9.81 m/s2 along -z. The sole owner of Bullet.
+/// A vehicle on its wheels in a mine: rigid frame, sprung tyres, friction, gravity 9.81 m/s2 along -z. The sole owner
+/// of Bullet.
 ///
 /// A wheel is a ball on a hinge (fixed) or in a socket (castor). Only those contacts of a ball count that the surface
 /// itself has, not those that Bullet finds with the edges between faces of one plane: rolling is smooth on a fine mesh.

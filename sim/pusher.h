@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
-
 #include "sim/physics.h"
 #include "sim/sim.h"
+
+#include <cstdint>
 
 namespace adit {
 
@@ -15,8 +15,8 @@ struct Intent {
   bool hold = true;         // stands and holds the vehicle
 };
 
-/// When and how fast a person walks: a speed that varies slowly, its ripple with each step, swaying, stops. All of it is a
-/// function of the seed, of time and of where on the route the vehicle is.
+/// When and how fast a person walks: a speed that varies slowly, its ripple with each step, swaying, stops. All of it
+/// is a function of the seed, of time and of where on the route the vehicle is.
 class Pusher {
  public:
   Pusher(const DriveSettings& settings, std::uint64_t seed, double length_m);
@@ -34,8 +34,8 @@ class Pusher {
   DriveSettings settings_;
   std::uint64_t seed_;
   double length_m_;
-  double go_at_s_;          // stands until then
-  double halt_at_m_ = 0;    // the next stop, or the end
+  double go_at_s_;        // stands until then
+  double halt_at_m_ = 0;  // the next stop, or the end
   std::uint64_t stops_ = 0;
   bool arrived_ = false;
   double speed_mps_ = 0;
@@ -46,11 +46,15 @@ class Pusher {
 struct Hands {
   double force_N = 0, moment_Nm = 0;       // integral terms
   double speed_mps = 0, wobble_rad_s = 0;  // wanted one step ago
+  bool holds = false;
+  double hold_yaw_rad = 0;  // where it was when the holding began
 };
 
 /// Force and moment that bring a vehicle to the speed and turn wanted, within what a person can do. Proportional with
-/// integral (the grade, the bearings) and the acceleration wanted fed forward.
+/// integral (the grade, the bearings) and the acceleration wanted fed forward. Who holds brakes the wheels and keeps
+/// the heading.
 /// @param curvature  1/m, to steer
-Effort push(const Vehicle& vehicle, const Intent& intent, double curvature, const Motion& motion, double step_s, Hands& hands);
+Effort push(const Vehicle& vehicle, const Intent& intent, double curvature, const Motion& motion, double step_s,
+            Hands& hands);
 
 }  // namespace adit

@@ -1,42 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
-
 #include "base/config.h"
 #include "base/drive.h"
 #include "base/progress.h"
 #include "base/world.h"
 #include "sim/vehicle.h"
 
+#include <cstdint>
+
 namespace adit {
 
 /// How a person pushes: walking speed, stops, gait, wobble; and how finely the motion is computed.
 struct DriveSettings {
-  double speed_mps = 0.7, speed_sd_mps = 0.15;     // slow variation, over some 10 s
+  double speed_mps = 0.7, speed_sd_mps = 0.15;       // slow variation, over some 10 s
   double stop_gap_min_m = 30, stop_gap_max_m = 100;  // way between two stops
   double stop_min_s = 5, stop_max_s = 60;
-  double lead_in_s = 3;             // stands before it starts and after it has arrived
-  double gait_ripple = 0.1;         // of the speed
+  double lead_in_s = 3;      // stands before it starts and after it has arrived
+  double gait_ripple = 0.1;  // of the speed
   double gait_hz = 1.8;
-  double wobble_deg = 2;            // of the heading
+  double wobble_deg = 2;  // of the heading
   double wobble_min_hz = 0.5, wobble_max_hz = 1;
-  double turn_max_deg_s = 35;       // slows down in bends to keep to it
-  int step_hz = 240;                // of the physics
-  int sample_hz = 120;              // of the path; divides step_hz
+  double turn_max_deg_s = 35;  // slows down in bends to keep to it
+  int step_hz = 240;           // of the physics
+  int sample_hz = 120;         // of the path; divides step_hz
 };
 Fields fields(DriveSettings& settings);
 
 /// Pushes a vehicle along a route.
 /// @param world    mesh closed, floor labelled; what is not floor or roof is rock to bump into as well
 /// @param route    at least two points and 1 m; the drive starts at rest on its first point, heading along it
-/// @return         the true path: B's pose from t = 0 s on, sample_hz times a second, up to the route's end or to where the
-///                 drive ended early. Being stuck, tipping over and falling are values: end, and cause with place and time
-/// @throws Error   where the vehicle cannot stand at the start (no floor, rock in the way), where a passage of the route is
+/// @return         the true path: B's pose from t = 0 s on, sample_hz times a second, up to the route's end or to where
+/// the
+///                 drive ended early. Being stuck, tipping over and falling are values: end, and cause with place and
+///                 time
+/// @throws Error   where the vehicle cannot stand at the start (no floor, rock in the way), where a passage of the
+/// route is
 ///                 narrower than the vehicle, where settings exclude one another
 /// The same arguments give the same bits; nothing depends on threads, addresses or earlier drives.
 /// Source of the pushing: docs/vehicles.md.
-Drive drive(const World& world, const Route& route, const Vehicle& vehicle, const DriveSettings& settings, std::uint64_t seed,
-            const Progress& progress = {});
+Drive drive(const World& world, const Route& route, const Vehicle& vehicle, const DriveSettings& settings,
+            std::uint64_t seed, const Progress& progress = {});
 
 }  // namespace adit

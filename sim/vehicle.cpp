@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/vehicle.h"
 
-#include <algorithm>
-
 #include "base/config.h"
+
+#include <algorithm>
 
 namespace adit {
 namespace {
@@ -57,10 +57,10 @@ void read_box(const Document& table, Vehicle& vehicle) {
 void check(const Document& document, const Vehicle& vehicle) {
   if (vehicle.wheels.size() < 3) document.fail("wheel", "a vehicle stands on three wheels or more");
   if (std::none_of(vehicle.wheels.begin(), vehicle.wheels.end(), [](const Wheel& w) { return w.kind == Wheel::fixed; }))
-    document.fail("wheel", "at least one must be of kind \"fixed\", or nothing keeps the vehicle from drifting sideways");
-  const auto [back, front] = std::minmax_element(vehicle.wheels.begin(), vehicle.wheels.end(), [](auto& a, auto& b) {
-    return a.position_B.x() < b.position_B.x();
-  });
+    document.fail("wheel",
+                  "at least one must be of kind \"fixed\", or nothing keeps the vehicle from drifting sideways");
+  const auto [back, front] = std::minmax_element(vehicle.wheels.begin(), vehicle.wheels.end(),
+                                                 [](auto& a, auto& b) { return a.position_B.x() < b.position_B.x(); });
   const double x = vehicle.centre_of_mass_B.x();
   if (x <= back->position_B.x() || x >= front->position_B.x())
     document.fail("centre_of_mass_m", "lies outside of the wheels: the vehicle would tip where it stands");
