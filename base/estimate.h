@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "base/grid.h"
 #include "base/mesh.h"
 #include "base/points.h"
 #include "base/trajectory.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace adit {
 
 /// A claim that two scans of the mapping laser, i < j, saw the same place.
 struct Closure {
   int i = 0, j = 0;
-  Pose2 X_ij;               // measured, or (0, 0, 0 or pi) where the method asserts the place only
-  bool measured = false;    // X_ij comes from matching
+  Pose2 X_ij;             // measured, or (0, 0, 0 or pi) where the method asserts the place only
+  bool measured = false;  // X_ij comes from matching
   bool accepted = false;
-  bool ambiguous = false;   // could as well be elsewhere
+  bool ambiguous = false;  // could as well be elsewhere
 };
 
 /// One round of the global alignment, for the picture of its convergence.
 struct AlignmentRound {
-  std::vector<Vec2> nodes;                          // positions before the round, every few metres
+  std::vector<Vec2> nodes;                           // positions before the round, every few metres
   std::vector<std::pair<int, int>> correspondences;  // node indices
 };
 
@@ -37,23 +37,25 @@ struct DegenerateStretch {
 /// What a mapper says, in M (the frame of the first pose of the mapping laser's body).
 struct Estimate {
   std::string method;
-  Trajectory path;                     // X_MB at each scan of the mapping laser, six degrees of freedom
-  std::vector<Pose2> open_loop;        // (path) scan matching alone, in the plane
-  std::vector<Pose2> planar;           // (path) after the global alignment
+  Trajectory path;               // X_MB at each scan of the mapping laser, six degrees of freedom
+  std::vector<Pose2> open_loop;  // (path) scan matching alone, in the plane
+  std::vector<Pose2> planar;     // (path) after the global alignment
   std::vector<AlignmentRound> rounds;
-  bool converged = false;              // the correspondences repeated
+  bool converged = false;  // the correspondences repeated
   std::vector<Closure> closures;
   std::vector<DegenerateStretch> degenerate;
   Grid grid;
   PointCloud points;
-  Mesh surface;                        // boundary of the mapped void, closed; empty where the rig cannot see it
-  std::optional<double> volume_m3;     // of the mapped void; none where the rig has no upward laser
+  Mesh surface;                     // boundary of the mapped void, closed; empty where the rig cannot see it
+  std::optional<double> volume_m3;  // of the mapped void; none where the rig has no upward laser
   std::optional<double> volume_sigma_m3;
-  std::vector<std::string> notes;      // what was dropped or could not be done, one sentence each
+  std::vector<std::string> notes;  // what was dropped or could not be done, one sentence each
 };
 
-/// DIR/trajectory.tum open_loop.tum planar.tum grid.pgm grid.yaml points.ply surface.ply map.json.
+/// DIR/trajectory.tum open_loop.tum planar.tum grid.pgm grid.yaml points.ply surface.ply map.json. What the estimate
+/// lacks has no file. map.json comes last: a folder that holds it is whole.
 void save_estimate(const std::string& dir, const Estimate& estimate);
+/// The same; the grid's cells come back as free, occupied or unknown. A missing or foreign file is an Error.
 Estimate load_estimate(const std::string& dir);
 
 }  // namespace adit
