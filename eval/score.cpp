@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/score.h"
+
+#include "base/error.h"
+#include "eval/closure_score.h"
+#include "eval/grid_error.h"
+#include "eval/map_error.h"
+#include "eval/metric_list.h"
+#include "eval/observable.h"
+#include "eval/passage_map.h"
+#include "eval/path_error.h"
+#include "eval/topology.h"
+#include "eval/true_scans.h"
+#include "eval/volume_error.h"
+#include "eval/worst_places.h"
+#include "rays/caster.h"
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <optional>
+
+namespace adit {
+namespace {
+
+constexpr double deg = std::numbers::pi / 180;
+constexpr double least_share = 0.95;
+
+std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%g", value);
+  return buffer;
+}
+
+// What all parts stand on.
+struct Bench {
+  const World& world;
+  const Truth& truth;
+  const Rig& nominal;
+  const Estimate& estimate;
+  const ScoreSettings& settings;
+  const Progress& progress;
+  Caster caster;
+  PassageMap passages;
+  TrueScans scans;
+  int mapping_laser;  // -1: the rig has none
+  Pose X_BN;          // the body as the mapping laser's nominal mount has it, in the true body
+  PathMatch match;
+  std::string no_path;  // why there is no path to judge, or empty
+  Alignment first_pose, se3;
+};
+
+Pose nominal_body(const Truth& truth, const Rig& nominal, int laser) {
+  if (laser < 0) return Pose::Identity();
+  return truth.rig.mounts[static_cast<size_t>(laser)].X_BS * nominal.mounts[static_cast<size_t>(laser)].X_BS.inverse();
+}
+
+void check_comparable(const World& world, const Truth& truth, const Rig& nominal) {
+  if (const std::string hash = world_hash(world); truth.world != hash)
+    throw Error("the truth belongs to another world: its hash is " + truth.world + ", the world's is " + hash,
+                Fault::not_comparable);
+  if (nominal.mounts.size() != truth.rig.mounts.size())
+    throw Error("the mapper's rig has " + std::to_string(nominal.mounts.size()) + " lasers, the truth's " +
+                    std::to_string(truth.rig.mounts.size()),
+                Fault::not_comparable);
+}
+
+Bench make_bench(const World& world, const Truth& truth, const Rig& nominal, const Estimate& estimate,
+                 const ScoreSettings& settings, const Progress& progress) {
+  check_comparable(world, truth, nominal);
+  const int laser = find_view(nominal, View::horizontal);
+  Bench b{world,
+          truth,
+          nominal,
+          estimate,
+          settings,
+          progress,
+          Caster(world.mesh),
+          PassageMap(world),
+          TrueScans(truth),
+          laser,
+          nominal_body(truth, nominal, laser),
+          {},
+          "",
+          {},
+          {}};
+  b.match = associate(truth.drive.path, estimate.path, b.X_BN, settings.max_gap_s);
+  if (estimate.path.empty()) {
+    b.no_path = "the estimate has no path";
+    return b;
+  }
+  if (b.match.share() < least_share)
+    throw Error("the truth covers " + std::to_string(b.match.size()) + " of the estimate's " +
+                    std::to_string(b.match.asked) + " poses (" +
+                    text(b.truth.drive.path.empty() ? 0 : b.truth.drive.path.stamp_s.front()) + " to " +
+                    text(b.truth.drive.path.empty() ? 0 : b.truth.drive.path.stamp_s.back()) + " s, the estimate " +
+                    text(estimate.path.stamp_s.front()) + " to " + text(estimate.path.stamp_s.back()) +
+                    " s); at least 95 % is needed: do the stamps belong together?",
+                Fault::not_comparable);
+  b.first_pose = align_first_pose(b.match);
+  b.se3 = align_se3(b.match);
+  return b;
+}
+
+// The path of scan matching alone, as a path in space.
+Trajectory lifted(const Estimate& estimate) {
+  Trajectory path;
+  path.stamp_s = estimate.path.stamp_s;
+  for (const Pose2& X : estimate.open_loop) path.X_WB.push_back(lift(X));
+  return path;
+}
+
+void score_open_loop(const Bench& b, const MetricList& list) {
+  const bool have = !b.estimate.path.empty() && b.estimate.open_loop.size() == b.estimate.path.size();
+  const std::string why = have ? "" : "the estimate has no path of scan matching alone";
+  const PathMatch match =
+      have ? associate(b.truth.drive.path, lifted(b.estimate), b.X_BN, b.settings.max_gap_s) : PathMatch{};
+  std::vector<PoseError> first, best;
+  if (match.size()) {
+    first = pose_errors(match, align_first_pose(match).X_WM);
+    best = pose_errors(match, align_se3(match).X_WM);
+  }
+  add_ate(list.under("first_pose"), first, why);
+  add_ate(list.under("se3"), best, why);
+  add_rpe(list, match, b.settings.rpe_m, why);
+  add_length(list, match, why);
+}
+
+void score_path(const Bench& b, Score& score) {
+  const MetricList list(score.metrics, "trajectory.");
+  list.add("matched_share", b.no_path.empty() ? b.match.share() : NAN, "share", Better::higher,
+           static_cast<std::int64_t>(b.match.asked), b.no_path);
+  score.poses = pose_errors(b.match, b.se3.X_WM);
+  add_ate(list.under("first_pose"), pose_errors(b.match, b.first_pose.X_WM), b.no_path);
+  add_ate(list.under("se3"), score.poses, b.no_path);
+  add_rpe(list, b.match, b.settings.rpe_m, b.no_path);
+  add_length(list, b.match, b.no_path);
+  score_open_loop(b, list.under("open_loop"));
+  const Vec3 p_BL = b.mapping_laser >= 0
+                        ? Vec3(b.nominal.mounts[static_cast<size_t>(b.mapping_laser)].X_BS.translation())
+                        : Vec3::UnitZ();
+  add_closures(MetricList(score.metrics, "closures."), b.passages, b.caster, b.match, b.estimate.closures, p_BL,
+               b.settings, b.no_path);
+}
+
+void score_points(const Bench& b, const Patches& patches, const Observable& observable, const VolumeDomain* domain,
+                  Score& score) {
+  const std::string why = !b.no_path.empty() ? b.no_path : b.estimate.points.p.empty() ? "the map has no points" : "";
+  const MetricList list(score.metrics, "map.");
+  const auto add = [&](const std::string& name, const MapPoints& points, const LaidPoints& laid,
+                       const std::string& because) {
+    add_map(list.under(name), points, laid, b.world.mesh, patches, observable, b.settings, because);
+  };
+  if (!why.empty()) {
+    for (const char* name : {"se3", "first_pose", "local_5m"}) add(name, {}, {}, why);
+    return;
+  }
+  const MapPoints points = map_points(b.estimate.points, b.estimate.path, b.nominal, b.settings.patch_m);
+  if (points.seen_M.empty())
+    score.notes.push_back(
+        "The map's points do not tell which beam saw them: each is held against the nearest surface of either side.");
+  b.progress("score: points", 0, 3);
+  {
+    const LaidPoints laid = lay(
+        points, [&](size_t) -> const Pose& { return b.se3.X_WM; }, b.caster, patches, domain);
+    add("se3", points, laid, "");
+    score.point_error_m = laid.error_m;
+    for (const std::int32_t f : laid.face)
+      score.point_label.push_back(f >= 0 && !b.world.mesh.label.empty()
+                                      ? static_cast<std::uint8_t>(b.world.mesh.label[static_cast<size_t>(f)])
+                                      : 0);
+    score.passages = passage_scores(laid, b.world.mesh, b.passages);
+    score.worst = worst_places(laid, b.passages);
+  }
+  b.progress("score: points", 1, 3);
+  add("first_pose", points,
+      lay(
+          points, [&](size_t) -> const Pose& { return b.first_pose.X_WM; }, b.caster, patches, domain),
+      "");
+  b.progress("score: points", 2, 3);
+  if (points.stamp_s.empty()) {
+    add("local_5m", {}, {}, "the map's points have no stamps");
+  } else {
+    const Windows windows = windows_of(b.match, b.settings.window_m);
+    add("local_5m", points,
+        lay(
+            points, [&](size_t i) -> const Pose& { return windows.at(points.stamp_s[i]); }, b.caster, patches, domain),
+        "");
+  }
+  b.progress("score: points", 3, 3);
+}
+
+void score_grid(const Bench& b, Score& score) {
+  const Grid& grid = b.estimate.grid;
+  const MetricList list(score.metrics, "grid.");
+  std::string why = b.no_path;
+  if (why.empty() && (grid.log_odds.empty() || !(grid.cell_m > 0))) why = "the map has no grid";
+  if (why.empty() && b.mapping_laser < 0) why = "the rig has no horizontal laser";
+  if (!why.empty()) {
+    add_grid(list, {}, {}, why);
+    add_topology(list, b.world, {}, {}, {}, 0, b.settings.pillar_m2, why);
+    return;
+  }
+  const auto laser = static_cast<size_t>(b.mapping_laser);
+  const TrueSection section = true_section(grid, b.se3.X_WM, b.scans, laser, b.world.mesh);
+  add_grid(list, section, grid, "");
+  double height_m = 0;
+  for (const Pose& X : b.match.X_WB) height_m += X.translation().z() / static_cast<double>(b.match.size());
+  add_topology(list, b.world, section, cells_over(section, grid), b.se3.X_WM, height_m, b.settings.pillar_m2, "");
+}
+
+void score_volume(const Bench& b, const std::optional<VolumeDomain>& domain, const std::string& why, Score& score) {
+  std::optional<Mesh> mapped;
+  std::string unmapped = b.no_path;
+  if (unmapped.empty() && b.estimate.surface.face.empty()) unmapped = "the map has no surface";
+  if (unmapped.empty())
+    if (const size_t open = open_edges(b.estimate.surface); open > 0)
+      unmapped = "the map's surface has " + std::to_string(open) + " open edges: it encloses no volume";
+  if (unmapped.empty()) {
+    mapped = b.estimate.surface;
+    for (Vec3& v : mapped->vertex) v = b.se3.X_WM * v;
+  }
+  add_volume(MetricList(score.metrics, "volume."), why.empty() ? enclosed_volume(b.world.mesh) : NAN, domain, why,
+             mapped, unmapped, b.estimate.volume_m3, b.estimate.volume_sigma_m3);
+}
+
+void add_meta(const Bench& b, Score& score) {
+  const ScoreSettings& s = b.settings;
+  const auto add = [&](const std::string& key, const std::string& value) { score.meta.emplace_back(key, value); };
+  add("method", b.estimate.method);
+  add("world", b.world.name);
+  add("truth_hash", b.truth.world);
+  add("association", "truth interpolated at the estimate's stamps, gaps up to " + text(s.max_gap_s) + " s");
+  add("first_pose", b.first_pose.how);
+  add("se3", b.se3.how);
+  const Vec3 shift = b.X_BN.translation();
+  add("mapping_mount_error", text(shift.norm()) + " m, " + text(Eigen::AngleAxisd(b.X_BN.linear()).angle() / deg) +
+                                 " deg: taken out of the path, for it is the calibration's");
+  add("closure", "measured: " + text(s.closure_m) + " m, " + text(s.closure_deg) +
+                     " deg; by place: " + text(s.place_m) + " m, " + text(s.place_deg) + " deg; revisited after " +
+                     text(s.revisit_m) + " m of way");
+  add("surface",
+      "patches of " + text(s.patch_m) + " m, observable with 1 beam at up to " + text(s.incidence_deg) + " deg");
+  add("domain", "columns of " + text(s.domain_cell_m) + " m, fans every " + text(s.domain_beam_deg) +
+                    " deg between scans up to " + text(s.domain_step_m) + " m apart, rock within " +
+                    text(s.domain_rock_m) + " m of the observable surface");
+}
+
+}  // namespace
+
+std::string better_name(Better better) {
+  return better == Better::higher ? "higher" : "lower";
+}
+
+const Metric* Score::find(const std::string& name) const {
+  for (const Metric& m : metrics)
+    if (m.name == name) return &m;
+  return nullptr;
+}
+
+Fields fields(ScoreSettings& s) {
+  constexpr double most = 1e6;
+  return {{"max_gap_s", &s.max_gap_s, "widest gap between true poses that is interpolated", 0, most},
+          {"rpe_m", &s.rpe_m, "distances of the relative pose error"},
+          {"closure_m", &s.closure_m, "a measured closure is right within this distance", 0, most},
+          {"closure_deg", &s.closure_deg, "and this angle", 0, 180},
+          {"place_m", &s.place_m, "true poses within this are the same place", 0, most},
+          {"place_deg", &s.place_deg, "headings within this of each other or of opposite are along each other", 0, 90},
+          {"revisit_m", &s.revisit_m, "way between two visits of a place", 0, most},
+          {"thresholds_m", &s.thresholds_m, "of precision, recall and F"},
+          {"patch_m", &s.patch_m, "edge of the patches in which surface is counted", 0.01, 100},
+          {"incidence_deg", &s.incidence_deg, "beams that meet the surface flatter do not make it observable", 0, 90},
+          {"window_m", &s.window_m, "of local_5m: way whose points are laid together", 0.1, most},
+          {"domain_cell_m", &s.domain_cell_m, "columns of the volume's domain", 0.01, 10},
+          {"domain_rock_m", &s.domain_rock_m, "rock about the observable surface that belongs to it", 0, 100},
+          {"domain_step_m", &s.domain_step_m, "scans farther apart span no volume", 0, 100},
+          {"domain_beam_deg", &s.domain_beam_deg, "between the beams whose fans span it", 0.01, 45},
+          {"pillar_m2", &s.pillar_m2, "smaller islands in a grid are no pillars", 0, most}};
+}
+
+Score score_map(const World& world, const Truth& truth, const Rig& nominal, const Estimate& estimate,
+                const ScoreSettings& settings, const Progress& progress) {
+  const Bench b = make_bench(world, truth, nominal, estimate, settings, progress);
+  Score score;
+  score.X_WM_first_pose = b.first_pose.X_WM;
+  score.X_WM_se3 = b.se3.X_WM;
+  add_meta(b, score);
+  if (!b.se3.warning.empty()) score.notes.push_back(b.se3.warning);
+  score_path(b, score);
+
+  const Pose X_WC = truth.drive.path.empty() ? Pose::Identity() : truth.drive.path.X_WB.front();
+  const Patches patches(world.mesh, settings.patch_m, X_WC);
+  const Observable observable =
+      observable_surface(patches, b.scans, world.mesh.face.size(), settings.incidence_deg * deg);
+  score.face_hits = observable.face_hits;
+  std::optional<VolumeDomain> domain;
+  std::string no_domain;
+  if (const size_t open = open_edges(world.mesh); open > 0)
+    no_domain = "the mine's mesh has " + std::to_string(open) + " open edges: it encloses no volume";
+  else
+    domain = volume_domain(world.mesh, patches, observable, b.scans, settings, progress);
+  score_points(b, patches, observable, domain ? &*domain : nullptr, score);
+  score_grid(b, score);
+  score_volume(b, domain, no_domain, score);
+  for (const Metric& m : score.metrics)
+    if (!m.why.empty() && m.name.find("by_label") == std::string::npos && m.name.find("rpe_") == std::string::npos)
+      score.notes.push_back(m.name + " could not be had: " + m.why + ".");
+  return score;
+}
+
+}  // namespace adit
