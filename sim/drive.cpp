@@ -21,8 +21,8 @@ constexpr double headway_m = 0.1;
 constexpr double stray_m = 1.5;   // off its route, a vehicle is lost
 constexpr double upright = 0.5;   // cosine of the tilt at which it has tipped over
 constexpr double fall_mps = 1.2;  // no bump that is rolled over lets it down so fast
-constexpr double still = 2e-3;    // m/s and rad/s
-constexpr double still_for_s = 0.25;
+constexpr double still = 5e-3;         // m/s and rad/s
+constexpr double still_for_s = 0.2;
 
 std::string say(const char* format, ...) {
   char text[400];
@@ -140,9 +140,10 @@ class Run {
   bool went_wrong(double t_s) {
     if (along_m_ > best_m_ + headway_m) best_m_ = along_m_, best_s_ = t_s;
     const std::string& name = vehicle_.name;
-    if (motion_.v_W.z() < -fall_mps || motion_.X_WB.translation().z() < lowest_m_ - 1)
-      return end(DriveEnd::fell, name + " fell " + place(t_s) + ": there is no floor under its wheels");
-    if (motion_.X_WB.linear()(2, 2) < upright) return end(DriveEnd::tipped, name + " tipped over " + place(t_s));
+    if (motion_.X_WB.linear()(2, 2) < upright || motion_.v_W.z() < -fall_mps) {
+      if (over_floor()) return end(DriveEnd::tipped, name + " tipped over " + place(t_s));
+      return end(DriveEnd::fell, name + " fell " + place(t_s) + ": there is no floor under it");
+    }
     if (std::abs(guide_.cross_m) > stray_m)
       return end(DriveEnd::stuck, name + say(" strayed %.1f m off its route ", std::abs(guide_.cross_m)) + place(t_s));
     if (t_s - best_s_ > patience_s)
@@ -150,6 +151,12 @@ class Run {
                                       say(": pushed for %.0f s, at last with %.0f N, ", patience_s, effort_.force_N) +
                                       touching());
     return false;
+  }
+
+  bool over_floor() const {
+    const Vec3 p = motion_.X_WB.translation();
+    const std::optional<double> z = floor_height_m(floor_of(world_), p.head<2>());
+    return z && std::abs(*z - p.z()) < 1;
   }
 
   std::string place(double t_s) const {
@@ -181,7 +188,6 @@ class Run {
   Pusher pusher_;
   const Pose start_;
   Physics physics_;
-  const double lowest_m_ = lowest(world_.mesh);
   Motion motion_;
   Guide guide_;
   Hands hands_;
@@ -189,12 +195,6 @@ class Run {
   Drive drive_;
   double along_m_ = 0, best_m_ = 0, best_s_ = 0, still_s_ = 0;
   bool resting_ = false;
-
-  static double lowest(const Mesh& mesh) {
-    double z = mesh.vertex.front().z();
-    for (const Vec3& p : mesh.vertex) z = std::min(z, p.z());
-    return z;
-  }
 };
 
 }  // namespace

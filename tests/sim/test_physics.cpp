@@ -145,10 +145,9 @@ TEST(Physics, FloorsBeyondAMillionFacesCarry) {
   const World world = terrain_world({0, 0}, {80, 80}, 0.1, [](const Vec2&) { return 1.5; });
   ASSERT_GT(world.mesh.face.size(), size_t{1} << 20);
   const Vehicle cart = load_vehicle("cart");
-  for (const Vec2& at : {Vec2(5, 5), Vec2(75, 75)}) {  // in the first and in the last part of the mesh
-    Physics physics(world.mesh, cart, pose_of({at.x(), at.y(), 1.5}, 0), step_s);
-    EXPECT_NEAR(settled(physics, 1).translation().z(), 1.5, 1e-3);
-  }
+  // In the last part of the mesh, for Bullet counts triangles in parts.
+  Physics physics(world.mesh, cart, pose_of({75, 75, 1.5}, 0), step_s);
+  EXPECT_NEAR(settled(physics, 0.5).translation().z(), 1.5, 1e-3);
 }
 
 TEST(Physics, TheFrameIsStoppedByAWallAndNamesItsFace) {
