@@ -187,11 +187,25 @@ Drive load_drive(const H5Reader& in) {
   return drive;
 }
 
-ScanTruth load_scan_truth(const H5Reader& in, const std::string& at) {
-  const Shape size = in.shape(at + "/range_m");
+void save_scan_truth(H5Writer& out, const Mount& mount, const ScanTruth& truth) {
+  const std::string at = "/scans/" + mount.name;
+  const Shape shape{truth.stamp_s.size(), static_cast<std::uint64_t>(mount.laser.beams)};
+  out.group(at);
+  out.array<double>(at + "/stamp_s", truth.stamp_s, {truth.stamp_s.size()});
+  out.array<float>(at + "/range_m", truth.range_m, shape);
+  out.array<std::uint8_t>(at + "/label", truth.label, shape);
+  out.array<std::int32_t>(at + "/part", truth.part, shape);
+  out.array<float>(at + "/incidence", truth.incidence_rad, shape);
+  out.array<std::int32_t>(at + "/face", truth.face, shape);
+}
+
+ScanTruth load_scan_truth(const H5Reader& in, const Mount& mount) {
+  const std::string at = "/scans/" + mount.name;
+  const Shape rows = in.shape(at + "/stamp_s");
+  if (rows.size() != 1) throw Error(in.file() + ": " + at + "/stamp_s must have one dimension");
+  const Shape size{rows[0], static_cast<std::uint64_t>(mount.laser.beams)};
   ScanTruth truth;
-  if (size.size() != 2) throw Error(in.file() + ": " + at + "/range_m must have two dimensions");
-  truth.stamp_s = in.array<double>(at + "/stamp_s", {size[0]});
+  truth.stamp_s = in.array<double>(at + "/stamp_s", rows);
   truth.range_m = in.array<float>(at + "/range_m", size);
   truth.label = in.array<std::uint8_t>(at + "/label", size);
   truth.part = in.array<std::int32_t>(at + "/part", size);
@@ -249,20 +263,7 @@ void save_truth(const std::string& file, const Truth& truth) {
     save_drive(out, truth.drive);
     save_rig(out, truth.rig);
     out.group("/scans");
-    for (size_t i = 0; i < truth.scans.size(); ++i) {
-      const std::string at = "/scans/" + truth.rig.mounts[i].name;
-      const ScanTruth& scans = truth.scans[i];
-      const std::uint64_t beams = static_cast<std::uint64_t>(truth.rig.mounts[i].laser.beams);
-      const Shape shape{scans.range_m.size() / beams, beams};
-      out.group(at);
-      ADIT_CHECK(scans.stamp_s.size() == shape[0]);
-      out.array<double>(at + "/stamp_s", scans.stamp_s, {scans.stamp_s.size()});
-      out.array<float>(at + "/range_m", scans.range_m, shape);
-      out.array<std::uint8_t>(at + "/label", scans.label, shape);
-      out.array<std::int32_t>(at + "/part", scans.part, shape);
-      out.array<float>(at + "/incidence", scans.incidence_rad, shape);
-      out.array<std::int32_t>(at + "/face", scans.face, shape);
-    }
+    for (size_t i = 0; i < truth.scans.size(); ++i) save_scan_truth(out, truth.rig.mounts[i], truth.scans[i]);
     out.close();
   });
 }
@@ -274,7 +275,7 @@ Truth load_truth(const std::string& file) {
   truth.world = in.text("/", "world");
   truth.drive = load_drive(in);
   truth.rig = load_rig(in);
-  for (const Mount& mount : truth.rig.mounts) truth.scans.push_back(load_scan_truth(in, "/scans/" + mount.name));
+  for (const Mount& mount : truth.rig.mounts) truth.scans.push_back(load_scan_truth(in, mount));
   return truth;
 }
 

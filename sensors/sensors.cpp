@@ -55,9 +55,9 @@ std::vector<double> logged(const std::vector<double>& times, size_t mount, const
   return stamps;
 }
 
-void make_room(size_t scans, int beams, Scans& log, ScanTruth& truth) {
-  const size_t n = scans * static_cast<size_t>(beams);
-  log.beams = beams;
+void make_room(const Mount& mount, Scans& log, ScanTruth& truth) {
+  const size_t n = truth.stamp_s.size() * static_cast<size_t>(mount.laser.beams);
+  log.beams = mount.laser.beams;
   log.range_m.resize(n);
   truth.range_m.resize(n);
   truth.label.resize(n);
@@ -66,47 +66,52 @@ void make_room(size_t scans, int beams, Scans& log, ScanTruth& truth) {
   truth.face.resize(n);
 }
 
+// Rigs and stamps are settled, the ranges are still to be measured.
+Recording blank(const World& world, const Drive& drive, const Rig& nominal, const SensorSettings& settings,
+                std::uint64_t seed) {
+  const size_t lasers = nominal.mounts.size();
+  Recording r{.log = {nominal, std::vector<Scans>(lasers)},
+              .truth = {world_hash(world), drive, true_rig(nominal, settings, seed), std::vector<ScanTruth>(lasers)}};
+  const double begin_s = drive.path.stamp_s.front(), end_s = drive.path.stamp_s.back();
+  for (size_t i = 0; i < lasers; ++i) {
+    const Mount& mount = r.truth.rig.mounts[i];
+    // When a laser begins is no secret: its stamps tell.
+    r.log.rig.mounts[i].phase_s = mount.phase_s;
+    r.truth.scans[i].stamp_s = scan_times(mount, i, begin_s, end_s, settings, seed);
+    if (r.truth.scans[i].stamp_s.empty())
+      throw Error("a drive of " + std::to_string(end_s - begin_s) + " s is too short for one scan of laser '" +
+                  mount.name + "'");
+    r.log.scans[i].stamp_s = logged(r.truth.scans[i].stamp_s, i, settings, seed);
+  }
+  return r;
+}
+
 }  // namespace
 
 Recording record(const World& world, const Drive& drive, const Rig& nominal, const Hull& hull,
                  const SensorSettings& settings, std::uint64_t seed, const Progress& progress) {
   check(drive, nominal, settings);
+  Recording r = blank(world, drive, nominal, settings, seed);
   const Caster caster(world.mesh);
-  const Rig rig = true_rig(nominal, settings, seed);
-  const size_t lasers = rig.mounts.size();
-  const double begin_s = drive.path.stamp_s.front(), end_s = drive.path.stamp_s.back();
+  for (const Mount& mount : r.truth.rig.mounts) check_open(caster, drive.path.X_WB.front(), mount);
 
-  std::vector<std::vector<double>> times(lasers);
   double total = 0, done = 0;
-  for (size_t i = 0; i < lasers; ++i) {
-    check_open(caster, drive.path.X_WB.front(), rig.mounts[i]);
-    times[i] = scan_times(rig.mounts[i], i, begin_s, end_s, settings, seed);
-    if (times[i].empty())
-      throw Error("a drive of " + std::to_string(end_s - begin_s) + " s is too short for one scan of laser '" +
-                  rig.mounts[i].name + "'");
-    total += static_cast<double>(times[i].size());
-  }
-
-  Recording recording{.log = {nominal, std::vector<Scans>(lasers)},
-                      .truth = {world_hash(world), drive, rig, std::vector<ScanTruth>(lasers)}};
-  for (size_t i = 0; i < lasers; ++i) {
-    // When a laser begins is no secret: its stamps tell.
-    recording.log.rig.mounts[i].phase_s = rig.mounts[i].phase_s;
-    Scans& scans = recording.log.scans[i];
-    ScanTruth& truth = recording.truth.scans[i];
-    make_room(times[i].size(), rig.mounts[i].laser.beams, scans, truth);
-    truth.stamp_s = times[i];
-    scans.stamp_s = logged(times[i], i, settings, seed);
-    const Sweep sweep(caster, drive.path, rig.mounts[i], i, hull, settings, seed);
+  for (const ScanTruth& truth : r.truth.scans) total += static_cast<double>(truth.stamp_s.size());
+  for (size_t i = 0; i < r.truth.scans.size(); ++i) {
+    const Mount& mount = r.truth.rig.mounts[i];
+    Scans& scans = r.log.scans[i];
+    ScanTruth& truth = r.truth.scans[i];
+    make_room(mount, scans, truth);
+    const Sweep sweep(caster, drive.path, mount, i, hull, settings, seed);
     constexpr size_t block = 1024, grain = 8;  // scans between two words of progress, and at a stretch on one thread
-    for (size_t from = 0; from < times[i].size(); from += block) {
-      const size_t n = std::min(block, times[i].size() - from);
-      parallel_chunks(n, grain, [&](size_t b, size_t e) { sweep.fire(times[i], from + b, from + e, scans, truth); });
+    for (size_t from = 0; from < truth.stamp_s.size(); from += block) {
+      const size_t n = std::min(block, truth.stamp_s.size() - from);
+      parallel_chunks(n, grain, [&](size_t b, size_t e) { sweep.fire(from + b, from + e, scans, truth); });
       done += static_cast<double>(n);
       progress("scans", done, total);
     }
   }
-  return recording;
+  return r;
 }
 
 }  // namespace adit

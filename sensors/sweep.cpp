@@ -56,12 +56,12 @@ void Sweep::aim(double time_s, size_t scan, std::vector<Ray>& rays) const {
     }
 }
 
-void Sweep::fire(const std::vector<double>& times, size_t begin, size_t end, Scans& scans, ScanTruth& truth) const {
+void Sweep::fire(size_t begin, size_t end, Scans& scans, ScanTruth& truth) const {
   const size_t beams = angle_.size();
   std::vector<Ray> rays(beams);
   std::vector<Hit> hits(beams);
   for (size_t scan = begin; scan < end; ++scan) {
-    aim(times[scan], scan, rays);
+    aim(truth.stamp_s[scan], scan, rays);
     caster_->nearest(rays, hits);
     for (size_t k = 0; k < beams; ++k) {
       const Meeting& own = shadow_[k];

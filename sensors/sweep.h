@@ -25,9 +25,9 @@ class Sweep {
   Sweep(const Caster& caster, const Trajectory& path, const Mount& mount, size_t index, const Hull& hull,
         const SensorSettings& settings, std::uint64_t seed);
 
-  /// Fires scans [begin, end), which start at times[i], into rows begin to end of arrays that are large enough already.
-  /// Safe to call from many threads for different rows.
-  void fire(const std::vector<double>& times, size_t begin, size_t end, Scans& scans, ScanTruth& truth) const;
+  /// Fires scans [begin, end), which start at truth.stamp_s, into rows begin to end of arrays that are large enough
+  /// already. Safe to call from many threads for different rows.
+  void fire(size_t begin, size_t end, Scans& scans, ScanTruth& truth) const;
 
  private:
   void aim(double time_s, size_t scan, std::vector<Ray>& rays) const;

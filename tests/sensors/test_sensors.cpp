@@ -8,6 +8,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -99,6 +100,23 @@ TEST(Sensors, TheLogHoldsTheNominalRigAndTheTruthTheTrueOne) {
   EXPECT_THAT(in.names("/scans"), ElementsAre("down", "front", "profile", "up"));
   EXPECT_THAT(in.names("/scans/up"), ElementsAre("ranges_mm", "stamp_s"));
   EXPECT_THAT(in.names("/rig/up"), ElementsAre("X_BS"));
+}
+
+TEST(Sensors, LoggedStampsErrAboutTheTrueOnesWithinTheJitter) {
+  SensorSettings s;
+  s.jitter_s = 0.002;
+  const Recording r = record(ring_world(20, 4, 2, 5), round_the_ring(60), load_rig("cart4", 38400), {}, s, 3);
+  for (size_t i = 0; i < 4; ++i) {
+    const std::vector<double>&told = r.log.scans[i].stamp_s, &so = r.truth.scans[i].stamp_s;
+    ASSERT_EQ(told.size(), so.size());
+    double most = 0;
+    for (size_t n = 0; n < so.size(); ++n) most = std::max(most, std::abs(told[n] - so[n]));
+    EXPECT_LE(most, 0.002);
+    EXPECT_GE(most, 0.0018);  // of 200 even draws none reaches the outer tenth with odds of 0.9^200 = 7e-10
+  }
+  s.jitter_s = 0;
+  const Recording exact_stamps = record(ring_world(20, 4, 2, 5), round_the_ring(5), load_rig("cart4", 38400), {}, s, 3);
+  EXPECT_EQ(exact_stamps.log.scans[0].stamp_s, exact_stamps.truth.scans[0].stamp_s);
 }
 
 TEST(Sensors, ARecordingComesBackFromItsFilesBitForBit) {
