@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "worlds/outline.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit {
+namespace {
+
+constexpr double lattice_m = 0.2;
+constexpr double far_m = 1e3;
+constexpr int band_rows = 64;
+
+struct Frame2 {
+  Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
+  void add(const Vec2& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+};
+
+Lattice lattice_over(const std::vector<Drift>& drifts, double margin) {
+  Frame2 box;
+  for (const Drift& d : drifts)
+    for (const Vec2& p : d.line) box.add(p);
+  Lattice f;
+  f.cell_m = lattice_m;
+  f.origin = ((box.low.array() - margin) / lattice_m).floor().matrix() * lattice_m;
+  f.width = static_cast<int>(std::ceil((box.high.x() + margin - f.origin.x()) / lattice_m)) + 1;
+  f.height = static_cast<int>(std::ceil((box.high.y() + margin - f.origin.y()) / lattice_m)) + 1;
+  f.value.assign(static_cast<size_t>(f.width) * f.height, static_cast<float>(far_m));
+  return f;
+}
+
+// Calls f(i, j) for the nodes of rows [first, last) within `reach` of the piece a-b.
+template <class F>
+void near_piece(const Lattice& field, const Vec2& a, const Vec2& b, double reach, int first, int last, const F& f) {
+  const Vec2 low = (a.cwiseMin(b).array() - reach - field.origin.array()) / field.cell_m;
+  const Vec2 high = (a.cwiseMax(b).array() + reach - field.origin.array()) / field.cell_m;
+  const int i0 = std::max(0, static_cast<int>(std::ceil(low.x()))),
+            i1 = std::min(field.width - 1, static_cast<int>(high.x()));
+  const int j0 = std::max(first, static_cast<int>(std::ceil(low.y()))),
+            j1 = std::min(last - 1, static_cast<int>(high.y()));
+  for (int j = j0; j <= j1; ++j)
+    for (int i = i0; i <= i1; ++i) f(i, j);
+}
+
+// Bands of rows are filled side by side: each node is written by one of them alone.
+template <class F>
+void for_bands(const Lattice& field, const F& fill) {
+  const size_t bands = (field.height + band_rows - 1) / band_rows;
+  parallel_for(bands, [&](size_t k) {
+    const int first = static_cast<int>(k) * band_rows;
+    fill(first, std::min(field.height, first + band_rows));
+  });
+}
+
+double piece_distance(const Vec2& a, const Vec2& b, const Vec2& p) {
+  const Vec2 u = b - a, w = p - a;
+  const double uu = u.squaredNorm();
+  const double t = uu > 0 ? std::clamp(w.dot(u) / uu, 0.0, 1.0) : 0.0;
+  return (w - t * u).norm();
+}
+
+// Signed distance from the union of the drifts: outside it is exact, for the distance from a union is the least one.
+void unite(const std::vector<Drift>& drifts, double reach, Outline& o) {
+  Lattice& f = o.depth;
+  for_bands(f, [&](int first, int last) {
+    for (size_t d = 0; d < drifts.size(); ++d) {
+      const Drift& drift = drifts[d];
+      double widest = 0;
+      for (size_t k = 0; k < drift.line.size(); ++k) widest = std::max({widest, drift.left[k], drift.right[k]});
+      for (size_t k = 0; k + 1 < drift.line.size(); ++k) {
+        near_piece(f, drift.line[k], drift.line[k + 1], widest + reach, first, last, [&](int i, int j) {
+          const auto distance = static_cast<float>(signed_distance(drift, k, f.node(i, j)));
+          float& least = f.value[f.index(i, j)];
+          if (distance >= least) return;
+          least = distance;
+          o.nearest[f.index(i, j)] = static_cast<int>(d);
+        });
+      }
+    }
+  });
+}
+
+// The rock that is left when discs of the radius are rolled through it: erode by the radius, grow by it again. The
+// result is the signed distance from the new ribs, up to a radius on the rock's side.
+void open_rock(Lattice& f, double radius) {
+  const std::vector<Loop> cores = contours(f, radius);
+  std::vector<float> gap(f.value.size(), static_cast<float>(far_m));
+  const double reach = radius + 1.0;
+  for_bands(f, [&](int first, int last) {
+    for (const Loop& core : cores) {
+      for (size_t k = 0; k < core.size(); ++k) {
+        const Vec2 &a = core[k], &b = core[(k + 1) % core.size()];
+        near_piece(f, a, b, reach, first, last, [&](int i, int j) {
+          float& least = gap[f.index(i, j)];
+          least = std::min(least, static_cast<float>(piece_distance(a, b, f.node(i, j))));
+        });
+      }
+    }
+  });
+  for (size_t n = 0; n < gap.size(); ++n) {
+    const bool core = f.value[n] >= radius;
+    const double from_core = std::min<double>(gap[n], reach);
+    f.value[n] = static_cast<float>(core ? radius + from_core : radius - from_core);
+  }
+}
+
+}  // namespace
+
+Outline outline_of(const std::vector<Drift>& drifts, double corner_radius_m) {
+  Outline o;
+  const double reach = 2 * corner_radius_m + 1.5;
+  o.depth = lattice_over(drifts, 10 + reach);
+  o.nearest.assign(o.depth.value.size(), -1);
+  unite(drifts, reach, o);
+  open_rock(o.depth, corner_radius_m);
+  o.loops = contours(o.depth, 0);
+  const auto outer = [](const Loop& loop) { return enclosed_area(loop) > 0; };
+  if (std::count_if(o.loops.begin(), o.loops.end(), outer) != 1)
+    throw Error("world: the void falls into several parts; widths are too small for the wander (world.wall_wander_m)");
+  std::rotate(o.loops.begin(), std::find_if(o.loops.begin(), o.loops.end(), outer), o.loops.end());
+  return o;
+}
+
+int passage_at(const Outline& o, const Vec2& p) {
+  const Vec2 at = ((p - o.depth.origin) / o.depth.cell_m).array().round();
+  const int i = std::clamp(static_cast<int>(at.x()), 0, o.depth.width - 1);
+  const int j = std::clamp(static_cast<int>(at.y()), 0, o.depth.height - 1);
+  return o.nearest[o.depth.index(i, j)];
+}
+
+}  // namespace adit

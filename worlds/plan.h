@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "worlds/worlds.h"
+
+#include <string>
+#include <vector>
+
+namespace adit {
+
+/// A way between two nodes of a plan.
+struct PlanPassage {
+  int a, b;  // nodes
+  double width_m;
+  std::vector<Vec2> line;  // from a to b, both included
+};
+
+/// Centre lines with widths: one connected graph. Nodes at which the plan was cut off by a selection's border are
+/// marked.
+struct Plan {
+  std::vector<Vec2> nodes;
+  std::vector<char> cut;  // (nodes)
+  std::vector<PlanPassage> passages;
+};
+
+/// The plan that the settings ask for, checked: crossings are nodes, all is connected, widths are positive.
+Plan make_plan(const WorldSettings& settings, std::uint64_t seed);
+
+/// The two kinds.
+Plan read_plan(const WorldSettings& settings);
+Plan panel_plan(const PanelSettings& settings, std::uint64_t seed);
+
+/// Makes each crossing of two passages a node.
+Plan split_crossings(Plan plan);
+
+}  // namespace adit
