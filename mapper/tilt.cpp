@@ -344,12 +344,14 @@ TiltSolution sampled(const Motion& motion, const std::vector<double>& stamp_s) {
   return solution;
 }
 
-TiltSolution stays_planar(const std::vector<double>& stamp_s, const std::vector<Pose2>& planar, std::string note) {
+TiltSolution stays_planar(size_t lasers, const std::vector<double>& stamp_s, const std::vector<Pose2>& planar,
+                          std::string note) {
   TiltSolution solution;
   solution.path.stamp_s = stamp_s;
   for (const Pose2& X : planar) solution.path.X_WB.push_back(lift(X));
   solution.dense = solution.path;
   solution.note = std::move(note);
+  solution.range_bias_m.assign(lasers, 0.0);
   return solution;
 }
 
@@ -375,13 +377,15 @@ TiltSolution solve_tilt(const Log& log, const std::vector<double>& stamp_s, cons
                         const TiltSettings& settings, const Progress& progress) {
   ADIT_CHECK(stamp_s.size() == planar.size());
   if (find_view(log.rig, View::forward_vertical) < 0 && find_view(log.rig, View::down) < 0)
-    return stays_planar(stamp_s, planar,
+    return stays_planar(log.rig.mounts.size(), stamp_s, planar,
                         "no forward vertical and no downward laser: height, pitch and roll are taken as zero");
   if (stamp_s.size() < 2)
-    return stays_planar(stamp_s, planar, "fewer than two scans: height, pitch and roll are taken as zero");
+    return stays_planar(log.rig.mounts.size(), stamp_s, planar,
+                        "fewer than two scans: height, pitch and roll are taken as zero");
   Problem problem = state(log, stamp_s, planar, settings);
   if (problem.data.beams.empty())
-    return stays_planar(stamp_s, planar, "no beam met floor or roof: height, pitch and roll are taken as zero");
+    return stays_planar(log.rig.mounts.size(), stamp_s, planar,
+                        "no beam met floor or roof: height, pitch and roll are taken as zero");
   double operations = 0;
   for (int n = 0; n < settings.iterations; ++n) {
     progress("tilt", n, settings.iterations);
@@ -395,6 +399,15 @@ TiltSolution solve_tilt(const Log& log, const std::vector<double>& stamp_s, cons
   solution.rms_m = problem.rms_m;
   solution.factor_operations = operations;
   return solution;
+}
+
+Log without_bias(Log log, const std::vector<double>& range_bias_m) {
+  ADIT_CHECK(range_bias_m.size() == log.scans.size());
+  for (size_t m = 0; m < log.scans.size(); ++m)
+    if (range_bias_m[m] != 0)
+      for (float& range_m : log.scans[m].range_m)
+        if (std::isfinite(range_m)) range_m = std::max(0.0F, range_m - static_cast<float>(range_bias_m[m]));
+  return log;
 }
 
 Trajectory estimate_tilt(const Log& log, const std::vector<double>& stamp_s, const std::vector<Pose2>& planar,

@@ -17,10 +17,10 @@ struct TiltSettings {
   double spacing_m = 0.15;     // beams of a scan are thinned to this distance on the rock
   double forward_m = 6;        // use of the forward vertical laser, horizontally
   double sideways_m = 4;       // use of the upward and downward lasers, horizontally
-  double sigma_m = 0.02;       // of a beam against the lattice: roughness between the nodes and noise
+  double sigma_m = 0.015;      // of a beam against the lattice: roughness between the nodes and noise
   double kernel = 2.5;         // width of the robust kernel in sigmas
   double curvature_m = 0.05;   // prior sd of the second difference of neighbouring nodes
-  double rib_sigma_deg = 4;    // trust in a rib being vertical, for one rib in one scan; 0 = none
+  double rib_sigma_deg = 8;    // trust in a rib being vertical, for one rib in one scan; 0 = none
   double bias_sigma_m = 0.01;  // prior sd of each laser's constant range error; 0 = taken as none
   int iterations = 4;
 };
@@ -48,6 +48,9 @@ struct TiltSolution {
 /// neither a forward vertical nor a downward laser keeps the planar path, level at z = 0, and says so in `note`.
 TiltSolution solve_tilt(const Log& log, const std::vector<double>& stamp_s, const std::vector<Pose2>& planar,
                         const TiltSettings& settings, const Progress& progress = {});
+
+/// The log with each laser's constant range error taken off; an echo nearer than that keeps a range of zero.
+Log without_bias(Log log, const std::vector<double>& range_bias_m);
 
 /// The path of solve_tilt alone.
 Trajectory estimate_tilt(const Log& log, const std::vector<double>& stamp_s, const std::vector<Pose2>& planar,
