@@ -22,7 +22,7 @@ struct Linear {
   Vec3 g = Vec3::Zero();        // the step that the data ask for is H^-1 g
   double weights = 0, squares = 0;
   double inlier_squares_m2 = 0;
-  int inliers = 0;
+  int pairs = 0, inliers = 0;
 };
 
 Linear linearise(const ScanPoints& scan, const LocalMap& map, const Pose2& X, double gate_m, const MatchSettings& s) {
@@ -36,6 +36,7 @@ Linear linearise(const ScanPoints& scan, const LocalMap& map, const Pose2& X, do
     const std::optional<LocalMap::Rib> rib =
         map.rib_near(q, Vec2(c * m.x() - sn * m.y(), sn * m.x() + c * m.y()), gate_m);
     if (!rib) continue;
+    ++out.pairs;
     const double r = rib->distance_m;
     const double lean = rib->sigma_normal_rad * rib->nearest_m;
     const double var = scan.sigma_m[k] * scan.sigma_m[k] + map_var + lean * lean;
@@ -243,6 +244,7 @@ Match match_scan(const ScanPoints& scan, const LocalMap& map, const Pose2& guess
     settled = small && gate_m <= s.gate_end_m;
     gate_m = std::max(s.gate_end_m, gate_m * (step.head<2>().norm() < 0.02 ? 0.5 : 0.8));
   }
+  out.known_share = static_cast<double>(at.pairs) / static_cast<double>(scan.size());
   out.inlier_share = static_cast<double>(at.inliers) / static_cast<double>(scan.size());
   out.rms_m = at.inliers > 0 ? std::sqrt(at.inlier_squares_m2 / at.inliers) : 0;
   out.weak_sigma_m = weak.sigma_m;

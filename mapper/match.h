@@ -31,6 +31,7 @@ struct Match {
   Pose2 X_AB;
   Eigen::Matrix3d information =
       Eigen::Matrix3d::Zero();  // of the scan alone, without any prior; same convention as above
+  double known_share = 0;       // of the scan's points that have any rib of the map near them
   double inlier_share = 0;      // of the scan's points that lie on a rib of the map (within 3 sigma)
   double rms_m = 0;             // of the inliers' distances
   double weak_sigma_m = 0;      // 1 sd of the position in its least certain direction (yaw free); +inf: not seen at all

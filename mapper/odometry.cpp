@@ -8,6 +8,7 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
+#include <optional>
 
 namespace adit {
 namespace {
@@ -32,19 +33,22 @@ Mat3 prediction_information(double dt_s, const OdometrySettings& s) {
   return Vec3(1 / (m * m), 1 / (m * m), 1 / (rad * rad)).asDiagonal();
 }
 
-// How far a stretch in which one direction is only predicted can have gone astray: the error of a speed that wanders.
+// How far a stretch in which one direction is only predicted can have gone astray: the error of a speed that wanders up
+// to its spread.
 class Drift {
  public:
-  void start(double speed_sigma_m_s) { p_ = pv_ = 0, v_ = speed_sigma_m_s * speed_sigma_m_s; }
-  void step(double dt_s, double change_m_s2) {
+  Drift(double speed_sigma_m_s, const OdometrySettings& s)
+      : v_(speed_sigma_m_s * speed_sigma_m_s), most_v_(std::max(v_, s.speed_spread_m_s * s.speed_spread_m_s)) {}
+  void step(double dt_s) {
+    constexpr double wander_s = 5;  // a pusher's speed has forgotten itself after some seconds
     p_ += 2 * pv_ * dt_s + v_ * dt_s * dt_s;
     pv_ += v_ * dt_s;
-    v_ += change_m_s2 * change_m_s2 * dt_s * 0.1;  // changes of speed last about a tenth of a second each
+    v_ = std::min(most_v_, v_ + most_v_ * dt_s / wander_s);
   }
   double sigma_m() const { return std::sqrt(p_); }
 
  private:
-  double p_ = 0, pv_ = 0, v_ = 0;
+  double p_ = 0, pv_ = 0, v_, most_v_;
 };
 
 // What one step came to.
@@ -52,6 +56,8 @@ struct Step {
   Pose2 X_MB;
   Mat3 information;
   bool placed = false, degenerate = false;
+  double known_share = 0;
+  Vec2 weak_direction = Vec2::UnitX();
   ScanPoints points;
 };
 
@@ -71,7 +77,10 @@ class Tracker {
     if (gap) twist_ = {};
     const Pose2 predicted = X_before * pose_after(twist_, dt_s);
     const PosePrior prior{predicted, prediction_information(dt_s, s_)};
-    Step out{predicted, prior.information, false, false, scan_points(scans_[i], fan_, twist_, s_.points)};
+    Step out;
+    out.X_MB = predicted;
+    out.information = prior.information;
+    out.points = scan_points(scans_[i], fan_, twist_, s_.points);
     std::optional<Match> match = gap ? std::nullopt : place(out.points, predicted, prior, X_before, dt_s);
     if (match && worth_a_second_look(X_before, match->X_AB, dt_s)) {
       const Twist2 better = twist_of(X_before.inverse() * match->X_AB, dt_s);
@@ -83,6 +92,8 @@ class Tracker {
       out.X_MB = match->X_AB;
       out.placed = true;
       out.degenerate = match->degenerate;
+      out.known_share = match->known_share;
+      out.weak_direction = match->weak_direction;
       out.information = match->information + (match->degenerate ? prior.information : Mat3::Zero());
       if (!gap) twist_ = twist_of(X_before.inverse() * out.X_MB, dt_s);
     }
@@ -131,7 +142,10 @@ class Tracker {
     }
     if (!step.placed) return;
     const Pose2 off = keys_.back().X_MB.inverse() * step.X_MB;
-    if (off.position().norm() < s_.key_step_m && std::abs(off.yaw_rad) < s_.key_step_deg * degree) return;
+    // What the map does not know must enter it, even if the cart seems to stand: where the way along a smooth passage
+    // is open, only what comes into view tells that it rolls.
+    const bool moved = off.position().norm() >= s_.key_step_m || std::abs(off.yaw_rad) >= s_.key_step_deg * degree;
+    if (!moved && step.known_share > 1 - s_.new_share) return;
     add_key({step.points, step.X_MB});
   }
 
@@ -151,23 +165,50 @@ class Tracker {
   int lost_ = 0;
 };
 
+// A direction in which a step was only predicted.
+struct Weak {
+  bool is = false;
+  Vec2 direction = Vec2::UnitX();  // in B
+};
+
 // Runs of steps whose motion was only predicted in some direction, with the sigma to which each has grown.
-std::vector<DegenerateStretch> stretches_of(const std::vector<double>& stamp_s, const std::vector<bool>& weak,
+std::vector<DegenerateStretch> stretches_of(const std::vector<double>& stamp_s, const std::vector<Weak>& weak,
                                             const OdometrySettings& s) {
   constexpr double bridge_s = 1.0;  // a single good scan between two weak ones does not tell the length
   std::vector<DegenerateStretch> out;
-  Drift drift;
+  std::optional<Drift> drift;
   for (size_t i = 1; i < weak.size(); ++i) {
-    if (!weak[i]) continue;
+    if (!weak[i].is) continue;
     if (out.empty() || stamp_s[i - 1] - out.back().to_s > bridge_s) {
       out.push_back({stamp_s[i - 1], stamp_s[i], 0});
-      drift.start(s.speed_sigma_m_s);
+      // The speed is known from the scans before; at the very start nothing is.
+      drift.emplace(i == 1 ? s.most_speed_m_s / 3 : 0.1 * s.speed_spread_m_s, s);
     }
-    drift.step(stamp_s[i] - stamp_s[i - 1], s.speed_change_m_s2);
+    drift->step(stamp_s[i] - stamp_s[i - 1]);
     out.back().to_s = stamp_s[i];
-    out.back().sigma_m = drift.sigma_m();
+    out.back().sigma_m = drift->sigma_m();
   }
   return out;
+}
+
+// The errors of a predicted stretch hang together, those of a chain of steps are taken for independent: each weak step
+// is told so much less certain that the chain ends at the sigma of the stretch.
+void weaken(const std::vector<double>& stamp_s, const std::vector<Weak>& weak,
+            const std::vector<DegenerateStretch>& stretches, std::vector<Mat3>& information) {
+  for (const DegenerateStretch& d : stretches) {
+    std::vector<size_t> steps;
+    for (size_t i = std::upper_bound(stamp_s.begin(), stamp_s.end(), d.from_s) - stamp_s.begin();
+         i < stamp_s.size() && stamp_s[i] <= d.to_s; ++i)
+      if (weak[i].is) steps.push_back(i);
+    const double least = static_cast<double>(steps.size()) / (d.sigma_m * d.sigma_m);
+    for (const size_t i : steps) {
+      const Vec3 v(weak[i].direction.x(), weak[i].direction.y(), 0);
+      const double over = 1 - least / v.dot(information[i] * v);
+      if (over <= 0) continue;
+      const Mat3 scale = Mat3::Identity() - (1 - std::sqrt(1 - over)) * v * v.transpose();
+      information[i] = scale * information[i] * scale;
+    }
+  }
 }
 
 }  // namespace
@@ -181,7 +222,8 @@ Fields fields(OdometrySettings& s) {
       {"key_step_deg", &s.key_step_deg, "turn between key scans", 0.1, 180},
       {"speed_change_m_s2", &s.speed_change_m_s2, "change of speed, 1 sd, for the prediction", 0.001, 100},
       {"turn_change_deg_s2", &s.turn_change_deg_s2, "change of turning, 1 sd, for the prediction", 0.1, 10000},
-      {"speed_sigma_m_s", &s.speed_sigma_m_s, "of the speed where a degenerate stretch begins, 1 sd", 0, 10},
+      {"speed_spread_m_s", &s.speed_spread_m_s, "of the speed about its mean, 1 sd", 0.001, 10},
+      {"new_share", &s.new_share, "of a scan's points not on the map, to make it a key scan", 0, 1},
       {"search_m", &s.search_m, "half width of the search where matching fails", 0.1, 10},
       {"search_deg", &s.search_deg, "half width of the search where matching fails", 1, 180},
       {"most_speed_m_s", &s.most_speed_m_s, "a faster match is a wrong one", 0.1, 100},
@@ -199,7 +241,7 @@ Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const Odom
   out.X_MB.assign(n, Pose2{});
   out.X_step.assign(n, Pose2{});
   out.information.assign(n, Mat3::Identity());
-  std::vector<bool> weak(n, false);
+  std::vector<Weak> weak(n);
   Tracker tracker(scans, horizontal, settings);
   tracker.begin();
   for (size_t i = 1; i < n; ++i) {
@@ -207,11 +249,12 @@ Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const Odom
     out.X_step[i] = out.X_MB[i - 1].inverse() * step.X_MB;
     out.X_MB[i] = out.X_MB[i - 1] * out.X_step[i];
     out.information[i] = settings.information_scale * step.information;
-    weak[i] = step.degenerate || !step.placed;
+    weak[i] = {step.degenerate || !step.placed, step.weak_direction};
     out.lost += !step.placed;
     if (i % 50 == 0 || i + 1 == n) progress("match scans", static_cast<double>(i + 1), static_cast<double>(n));
   }
   out.degenerate = stretches_of(scans.stamp_s, weak, settings);
+  weaken(scans.stamp_s, weak, out.degenerate, out.information);
   return out;
 }
 

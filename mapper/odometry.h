@@ -33,7 +33,8 @@ struct OdometrySettings {
   double key_step_deg = 10;
   double speed_change_m_s2 = 0.5;  // 1 sd of the change of speed, for the prediction
   double turn_change_deg_s2 = 40;
-  double speed_sigma_m_s = 0.05;  // of the speed where a degenerate stretch begins
+  double speed_spread_m_s = 0.2;  // of the speed about its mean, 1 sd: what degenerate stretches may be wrong by
+  double new_share = 0.1;         // of a scan's points not on the map, for it to be a new key scan
   double information_scale = 1;   // of a step against that of its match
   double search_m = 0.6;          // half width of the search when the refiner fails
   double search_deg = 25;
