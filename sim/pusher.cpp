@@ -71,7 +71,7 @@ void Pusher::plan_stop(double along_m) {
 
 double Pusher::cruise_mps(double t_s) const {
   const double v = settings_.speed_mps + settings_.speed_sd_mps * wander(seed_, Draw::push_speed, 0, t_s / knot_s);
-  return std::clamp(v, 0.5 * settings_.speed_mps, 2 * settings_.speed_mps);
+  return std::clamp(v, 0.5 * settings_.speed_mps, 1.6 * settings_.speed_mps);
 }
 
 Intent Pusher::want(double t_s, double step_s, double along_m, double curvature_ahead) {
