@@ -91,7 +91,8 @@ Fields fields(RobustSettings& settings);
 /// a radius that grows with the uncertainty of the path between the two; each matched; sets that agree with each other
 /// along the way; the pose graph solved to convergence under a Cauchy kernel, and what the kernel silences taken back.
 /// The rounds end when no candidate is new and the accepted set is that of the round before. Returned closures are
-/// measured; those that fit elsewhere too are flagged ambiguous and bend nothing. Sources: Mangelson et al., "Pairwise
+/// measured; those that fit elsewhere too, or slide along a smooth passage, are flagged
+/// ambiguous and bend nothing. Sources: Mangelson et al., "Pairwise
 /// consistent measurement set maximization", ICRA 2018 (the test of agreement).
 Aligned align_robust(const Odometry& odometry, const MatchPlaces& match_places, const RobustSettings& settings,
                      const Progress& progress = {});

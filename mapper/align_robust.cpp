@@ -29,7 +29,7 @@ struct Loop {
   bool agrees = false;  // with its neighbours
   bool accepted = false;
 
-  bool usable() const { return match.found && !match.ambiguous; }
+  bool usable() const { return match.found && !match.ambiguous && !match.degenerate; }
 };
 
 struct Problem {
@@ -130,7 +130,7 @@ bool worthwhile(const Problem& p, const Candidate& c) {
   const auto it = p.loops.find({c.a, c.b});
   if (it == p.loops.end()) return true;
   const Loop& loop = it->second;
-  if (loop.usable() && !loop.match.degenerate) return false;
+  if (loop.usable()) return false;
   const double moved_m = (loop.guess.inverse() * c.X_ab).position().norm();
   return moved_m > p.settings.least_reach_m || reach_m(c, p.settings) < 0.5 * loop.reach_m;
 }
@@ -263,8 +263,8 @@ std::vector<Closure> closures_of(const Problem& p) {
   std::vector<Closure> result;
   for (const auto& [key, loop] : p.loops)
     if (loop.match.found)
-      result.push_back(
-          {p.chain.scan[loop.a], p.chain.scan[loop.b], loop.match.X_ij, true, loop.accepted, loop.match.ambiguous});
+      result.push_back({p.chain.scan[loop.a], p.chain.scan[loop.b], loop.match.X_ij, true, loop.accepted,
+                        loop.match.ambiguous || loop.match.degenerate});
   return result;
 }
 

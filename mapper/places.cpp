@@ -5,30 +5,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace adit {
 namespace {
 
 using Matrix3 = Eigen::Matrix3d;
 
-/// Scans around scan i, `step_m` of way apart, up to `half_m` before and behind, and their poses in body i.
+/// Scans around scan i and their poses in body i.
 struct Around {
   std::vector<const ScanPoints*> scan;
   std::vector<Pose2> X_iB;
 };
 
-Around around(int i, double half_m, double step_m, const std::vector<ScanPoints>& scans, const Chain& chain,
+/// Those `step_m` of way apart, up to before_m before and after_m after it.
+struct Span {
+  double before_m, after_m, step_m;
+};
+
+Around around(int i, const Span& span, const std::vector<ScanPoints>& scans, const Chain& chain,
               const std::vector<Pose2>& X_MB) {
   const int n = static_cast<int>(scans.size());
   std::vector<int> chosen{i};
-  for (int k = i - 1, last = i; k >= 0 && chain.along_m[i] - chain.along_m[k] <= half_m; --k)
-    if (chain.along_m[last] - chain.along_m[k] >= step_m) chosen.push_back(last = k);
-  for (int k = i + 1, last = i; k < n && chain.along_m[k] - chain.along_m[i] <= half_m; ++k)
-    if (chain.along_m[k] - chain.along_m[last] >= step_m) chosen.push_back(last = k);
+  for (int k = i - 1, last = i; k >= 0 && chain.along_m[i] - chain.along_m[k] <= span.before_m; --k)
+    if (chain.along_m[last] - chain.along_m[k] >= span.step_m) chosen.push_back(last = k);
+  for (int k = i + 1, last = i; k < n && chain.along_m[k] - chain.along_m[i] <= span.after_m; ++k)
+    if (chain.along_m[k] - chain.along_m[last] >= span.step_m) chosen.push_back(last = k);
   std::sort(chosen.begin(), chosen.end());
   Around a;
   for (int k : chosen) a.scan.push_back(&scans[k]), a.X_iB.push_back(X_MB[i].inverse() * X_MB[k]);
   return a;
+}
+
+/// The part of the path from which a place's map is made. A laser looks ahead: who comes the other way looks at what
+/// was seen from further back.
+Span map_span(const PlacePair& pair, const PlaceSettings& s) {
+  const bool opposite = std::abs(pair.X_ij.yaw_rad) > std::numbers::pi / 2;
+  return {s.map_half_m + (opposite ? s.map_back_m : 0), s.map_half_m, s.map_step_m};
 }
 
 /// The information without its part along a direction of the position.
@@ -71,6 +84,7 @@ PlaceMatch match_pair(const PlacePair& pair, const ScanPoints& scan, const Local
 
 Fields fields(PlaceSettings& s) {
   return {{"map_half_m", &s.map_half_m, "way before and behind that makes a place's map", 0.5, 50},
+          {"map_back_m", &s.map_back_m, "more of the way behind, where the place is passed the other way", 0, 50},
           {"map_step_m", &s.map_step_m, "between the scans of a place's map", 0.05, 10},
           {"scan_half_m", &s.scan_half_m, "way that is joined to the scan which is placed in it", 0, 50},
           {"scan_step_m", &s.scan_step_m, "between the scans that are joined", 0.05, 10},
@@ -86,8 +100,9 @@ MatchPlaces match_by_scans(const std::vector<ScanPoints>& scans, const Chain& ch
     std::vector<PlaceMatch> result(pairs.size());
     parallel_for(pairs.size(), [&](size_t k) {
       const PlacePair& pair = pairs[k];
-      const Around place = around(pair.i, settings.map_half_m, settings.map_step_m, scans, chain, X_MB);
-      const Around seen = around(pair.j, settings.scan_half_m, settings.scan_step_m, scans, chain, X_MB);
+      const Around place = around(pair.i, map_span(pair, settings), scans, chain, X_MB);
+      const Around seen =
+          around(pair.j, {settings.scan_half_m, settings.scan_half_m, settings.scan_step_m}, scans, chain, X_MB);
       const LocalMap map(place.scan, place.X_iB);
       result[k] = match_pair(pair, join_scans(seen.scan, seen.X_iB, {}), map, settings, match);
     });

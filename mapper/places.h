@@ -13,11 +13,12 @@ namespace adit {
 /// How two places are held against each other by what the laser saw there.
 struct PlaceSettings {
   double map_half_m = 5;     // way before and behind that makes a place's map
-  double map_step_m = 0.5;   // between its scans
+  double map_back_m = 9;     // more of the way behind, where the place is passed the other way
+  double map_step_m = 0.6;   // between its scans
   double scan_half_m = 1.5;  // way that is joined to the scan which is placed in it
   double scan_step_m = 0.5;
   double sure_m = 0.4;           // a path known better than this needs no search
-  double inlier_share = 0.6;     // of the points, for a match to be one
+  double inlier_share = 0.5;     // of the points, for a match to be one
   double ambiguous_share = 0.9;  // a second place that scores this share of the best makes a match ambiguous
 };
 Fields fields(PlaceSettings& settings);
