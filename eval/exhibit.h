@@ -63,6 +63,7 @@ Figure aligned_plan(const Exhibit& exhibit);        // Fig. 3: after the global 
 Figure rounds_plan(const Exhibit& exhibit);         // Fig. 2: correspondences by rounds
 Figure grid_plan(const Exhibit& exhibit);           // Fig. 4: occupancy grid
 Figure closures_plan(const Exhibit& exhibit);       // loop closures over the plan
+Figure error_chart(const Exhibit& exhibit);         // error of the path along the way driven
 /// In space.
 Figure cutaway_view(const Exhibit& exhibit);          // Fig. 5: the mine with its roof lifted off, coloured by error
 Figure chamber_view(const Exhibit& exhibit);          // the same near the worst place, closer

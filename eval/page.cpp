@@ -44,13 +44,17 @@ std::string first_screen(const ReportInput& in, const Plate& hero, const std::ve
 }
 
 std::string chapter_html(const Chapter& chapter) {
+  using Columns = Chapter::Columns;
   std::string html = "<section aria-labelledby=\"" + chapter.id + "\"><h2 id=\"" + chapter.id + "\">" +
                      escaped(chapter.title) + "</h2>\n";
-  const size_t trio = chapter.side_by_side ? std::min<size_t>(3, chapter.plates.size()) : 0;
-  if (trio) html += "<div class=\"trio\">\n";
-  for (size_t k = 0; k < chapter.plates.size(); ++k) {
-    html += plate_html(chapter.plates[k], k >= trio);
-    if (trio && k + 1 == trio) html += "</div>\n";
+  const size_t n = chapter.plates.size();
+  const size_t beside = chapter.columns == Columns::two           ? n
+                        : chapter.columns == Columns::first_three ? std::min<size_t>(3, n)
+                                                                  : 0;
+  if (beside) html += chapter.columns == Columns::two ? "<div class=\"pair\">\n" : "<div class=\"trio\">\n";
+  for (size_t k = 0; k < n; ++k) {
+    html += plate_html(chapter.plates[k], k >= beside || chapter.columns == Columns::two);
+    if (beside && k + 1 == beside) html += "</div>\n";
   }
   return html + "</section>\n";
 }

@@ -26,7 +26,7 @@ struct Plate {
 struct Chapter {
   std::string id, title;
   std::vector<Plate> plates;
-  bool side_by_side = false;
+  enum class Columns { one, two, first_three } columns = Columns::one;  // how wide pages lay them out
 };
 
 /// The whole page.

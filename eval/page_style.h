@@ -38,6 +38,9 @@ figure svg a:focus-visible circle { stroke: #0b57a4; stroke-width: 5; }
 figcaption { font-size: .9rem; color: var(--faint); margin-top: .5em; max-width: 95ch; }
 .narrow { display: none; }
 .trio { display: grid; grid-template-columns: repeat(3, 1fr); gap: 16px; }
+header figure svg { max-height: calc(100vh - 130px); min-height: 300px; }
+.pair { display: grid; grid-template-columns: repeat(2, 1fr); gap: 16px 20px; }
+main > section > figure { max-width: 1240px; }
 .missing { background: var(--panel); border-radius: 8px; padding: 1em 1.2em; color: var(--faint); }
 table { border-collapse: collapse; font-size: .9rem; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { text-align: left; padding: .28em .8em .28em 0; border-bottom: 1px solid var(--rule); vertical-align: top; }
@@ -48,7 +51,7 @@ summary { cursor: pointer; font-weight: 600; padding: .4em 0; }
 pre { background: var(--panel); border-radius: 8px; padding: 1em; overflow-x: auto; font-size: .82rem; line-height: 1.45; }
 .scroll { overflow-x: auto; }
 footer { margin: 3em auto 2em; color: var(--faint); font-size: .85rem; }
-@media (max-width: 1000px) { .first { grid-template-columns: 1fr; } .numbers { grid-template-columns: repeat(3, 1fr); } .trio { grid-template-columns: 1fr; } }
+@media (max-width: 1000px) { .first { grid-template-columns: 1fr; } .numbers { grid-template-columns: repeat(3, 1fr); } .trio, .pair { grid-template-columns: 1fr; } header figure svg { max-height: none; min-height: 0; } }
 @media (max-width: 620px) {
   header, main, footer { padding-left: 14px; padding-right: 14px; }
   .verdict { font-size: 1.08rem; }

@@ -20,7 +20,8 @@ KeyNumber number_of(const Score& score, const std::string& label, const std::str
   if (!m) return {label, "–", "", "not scored"};
   if (!std::isfinite(m->value)) return {label, "–", "", m->why.empty() ? "could not be had" : m->why};
   const std::string plus = sign && m->value > 0 ? "+" : "";
-  return {label, plus + plain_number(factor * m->value), unit, "over " + std::to_string(m->n) + " " + of_what};
+  const std::string note = m->n > 1 && !of_what.empty() ? "over " + std::to_string(m->n) + " " + of_what : "";
+  return {label, plus + plain_number(factor * m->value), unit, note};
 }
 
 KeyNumber loops_of(const Score& score) {
@@ -54,6 +55,13 @@ std::string mapped_words(const ReportInput& in) {
   return words + ": " + length_words(path.length_m()) + " driven in " + plain_number(minutes, 2) + " min";
 }
 
+KeyNumber volume_of(const Score& score) {
+  KeyNumber k = number_of(score, "volume error", "volume.error_percent", "%", 1, "", true);
+  if (const Metric* seen = had(score, "volume.observable_m3"); seen && k.note.empty())
+    k.note = "of " + plain_number(seen->value, 4) + " m³ that could be seen";
+  return k;
+}
+
 }  // namespace
 
 std::vector<KeyNumber> key_numbers(const ReportInput& in) {
@@ -61,7 +69,7 @@ std::vector<KeyNumber> key_numbers(const ReportInput& in) {
   return {number_of(s, "path error, rms in plan", "trajectory.se3.ate_xy_rmse_m", "cm", 100, "poses"),
           number_of(s, "map to rock, mean distance", "map.se3.mae_m", "cm", 100, "points"),
           number_of(s, "map and rock agree to 10 cm", "map.se3.f_10cm", "%", 100, "patches"),
-          number_of(s, "volume error", "volume.error_percent", "%", 1, "columns", true),
+          volume_of(s),
           loops_of(s),
           worst_of(s)};
 }

@@ -15,9 +15,9 @@ constexpr int most_numbered = 20;
 
 const std::vector<std::pair<std::string, std::function<Figure(const Exhibit&)>>>& views() {
   static const std::vector<std::pair<std::string, std::function<Figure(const Exhibit&)>>> all = {
-      {"plan", error_plan},      {"truth", truth_plan}, {"raw", raw_plan},           {"aligned", aligned_plan},
-      {"rounds", rounds_plan},   {"grid", grid_plan},   {"closures", closures_plan}, {"cutaway", cutaway_view},
-      {"chamber", chamber_view}, {"tilt", tilt_section}};
+      {"plan", error_plan},      {"truth", truth_plan},     {"raw", raw_plan},     {"aligned", aligned_plan},
+      {"rounds", rounds_plan},   {"errors", error_chart},   {"grid", grid_plan},   {"closures", closures_plan},
+      {"cutaway", cutaway_view}, {"chamber", chamber_view}, {"tilt", tilt_section}};
   return all;
 }
 

@@ -14,24 +14,25 @@ namespace {
 
 std::vector<Chapter> make_chapters(const Exhibit& x, const Progress& progress) {
   std::vector<Chapter> chapters;
-  const int total = 8 + x.settings.interiors + static_cast<int>(x.spots.size());
+  const int total = 10 + x.settings.interiors + static_cast<int>(x.spots.size());
   int done = 0;
   const auto add = [&](Figure figure) {
     chapters.back().plates.push_back({std::move(figure), {}, {}});
     progress("report: pictures", ++done, total);
   };
-  chapters.push_back({"worst", "Worst places", {}, false});
+  chapters.push_back({"worst", "Worst places", {}, Chapter::Columns::two});
   for (int k = 0; k < static_cast<int>(x.spots.size()); ++k) add(spot_view(x, k));
   if (x.spots.empty()) add(spot_view(x, 0));
-  chapters.push_back({"space", "The map in space", {}, false});
+  chapters.push_back({"space", "The map in space", {}, Chapter::Columns::one});
   add(cutaway_view(x));
   add(chamber_view(x));
   for (int k = 0; k < x.settings.interiors; ++k) add(interior_view(x, k));
   add(tilt_section(x));
-  chapters.push_back({"plans", "Path and plan", {}, true});
+  chapters.push_back({"plans", "Path and plan", {}, Chapter::Columns::first_three});
   add(truth_plan(x));
   add(raw_plan(x));
   add(aligned_plan(x));
+  add(error_chart(x));
   add(rounds_plan(x));
   add(closures_plan(x));
   add(grid_plan(x));

@@ -93,7 +93,7 @@ void main() {
       light = 0.40 + 0.24 * sky + 0.22 * key + 0.24 * head;
     }
   }
-  if (headlamp) light *= (rock > 0.0 ? 1.7 : 1.02) / (1.0 + pow(distance_m / lamp, 1.6));
+  if (headlamp) light *= (rock > 0.0 ? 1.8 : 1.2) / (1.0 + pow(distance_m / lamp, 1.6));
   colour = vec4(min(base * light + gloss, vec3(1.0)), 1.0);
 })";
 

@@ -95,7 +95,12 @@ Figure panel(const Exhibit& x, const std::string& name, const std::string& title
              std::pair<Drawing, PlanFrame>& sheet, bool ground) {
   Figure figure{.name = name, .title = title};
   sheet = plan_sheet(low, high, 640, {12, 12, 12, 48});
-  add_ground(sheet.first, sheet.second, ground ? x.outline : std::vector<std::vector<Vec2>>{});
+  if (ground) {
+    add_ground(sheet.first, sheet.second, x.outline);
+  } else {
+    const Vec2 a = sheet.second.origin_px, b = a + Vec2(sheet.second.width_px(), sheet.second.height_px());
+    sheet.first.add(Area{{{a, {b.x(), a.y()}, b, {a.x(), b.y()}}}, ink::open});
+  }
   return figure;
 }
 

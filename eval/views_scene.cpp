@@ -323,6 +323,11 @@ Figure interior_view(const Exhibit& x, int k) {
   drawing.add(Layer{see(map, camera, width, height), {right, 0}, {right + width, static_cast<double>(height)}});
   add_plate(drawing, 0, "the mine");
   add_plate(drawing, right, std::string("the map") + (x.has_surface() ? "" : " (points)") + ", coloured by error");
+  const double bar = 250, corner = drawing.width_px - bar - 40, top = drawing.height_px - 64;
+  drawing.add(Area{
+      {{{corner, top}, {drawing.width_px, top}, {drawing.width_px, drawing.height_px}, {corner, drawing.height_px}}},
+      {243, 243, 240, 225}});
+  add_colour_bar(drawing, x.ramp, {corner + 22, top}, bar, 14);
   figure.drawing = drawing;
   figure.caption = plain_number(from->along_m, 4) +
                    " m along the path: the true mine on the left, the map from the same place on the right. "
