@@ -22,7 +22,7 @@ struct TiltSettings {
   double curvature_m = 0.05;   // prior sd of the second difference of neighbouring nodes
   double rib_sigma_deg = 8;    // trust in a rib being vertical, for one rib in one scan; 0 = none
   double bias_sigma_m = 0.01;  // prior sd of each laser's constant range error; 0 = taken as none
-  int iterations = 4;
+  int iterations = 3;
 };
 Fields fields(TiltSettings& s);
 
