@@ -16,12 +16,13 @@ namespace {
 
 constexpr double lookahead_m = 0.9;
 constexpr double settle_s = 5;    // longest time to come to rest before the drive
-constexpr double patience_s = 5;  // without headway_m in it, a vehicle is stuck
+constexpr double patience_s = 5;  // without moving on in it, a vehicle is stuck
+constexpr double turning_s = 30;  // nor does it take longer to turn on the spot
 constexpr double headway_m = 0.1;
 constexpr double stray_m = 1.5;   // off its route, a vehicle is lost
 constexpr double upright = 0.5;   // cosine of the tilt at which it has tipped over
 constexpr double fall_mps = 1.2;  // no bump that is rolled over lets it down so fast
-constexpr double still = 5e-3;         // m/s and rad/s
+constexpr double still = 5e-3;    // m/s and rad/s
 constexpr double still_for_s = 0.2;
 
 std::string say(const char* format, ...) {
@@ -123,7 +124,7 @@ class Run {
 
   void step(double t_s) {
     const Intent intent = pusher_.want(t_s, step_s_, along_m_, guide_.curvature_ahead);
-    if (intent.hold) best_s_ = t_s;
+    if (intent.hold) moved_s_ = ahead_s_ = t_s;
     watch_rest(intent.hold);
     if (resting_) return;
     effort_ = push(vehicle_, intent, guide_.curvature, motion_, step_s_, hands_);
@@ -137,8 +138,15 @@ class Run {
     drive_.path.X_WB.push_back(motion_.X_WB);
   }
 
+  // It moves on along the route, or at least about the place: a turn on the spot has no headway.
+  void watch_headway(double t_s) {
+    if (along_m_ > best_m_ + headway_m) best_m_ = along_m_, ahead_s_ = t_s;
+    const Vec3& p = motion_.X_WB.translation();
+    if (ahead_s_ == t_s || (p - moved_to_).norm() > 2 * headway_m) moved_to_ = p, moved_s_ = t_s;
+  }
+
   bool went_wrong(double t_s) {
-    if (along_m_ > best_m_ + headway_m) best_m_ = along_m_, best_s_ = t_s;
+    watch_headway(t_s);
     const std::string& name = vehicle_.name;
     if (motion_.X_WB.linear()(2, 2) < upright || motion_.v_W.z() < -fall_mps) {
       if (over_floor()) return end(DriveEnd::tipped, name + " tipped over " + place(t_s));
@@ -146,7 +154,7 @@ class Run {
     }
     if (std::abs(guide_.cross_m) > stray_m)
       return end(DriveEnd::stuck, name + say(" strayed %.1f m off its route ", std::abs(guide_.cross_m)) + place(t_s));
-    if (t_s - best_s_ > patience_s)
+    if (t_s - moved_s_ > patience_s || t_s - ahead_s_ > turning_s)
       return end(DriveEnd::stuck, name + " got stuck " + place(t_s) +
                                       say(": pushed for %.0f s, at last with %.0f N, ", patience_s, effort_.force_N) +
                                       touching());
@@ -193,7 +201,8 @@ class Run {
   Hands hands_;
   Effort effort_;
   Drive drive_;
-  double along_m_ = 0, best_m_ = 0, best_s_ = 0, still_s_ = 0;
+  double along_m_ = 0, best_m_ = 0, ahead_s_ = 0, moved_s_ = 0, still_s_ = 0;
+  Vec3 moved_to_ = Vec3::Zero();
   bool resting_ = false;
 };
 

@@ -8,6 +8,11 @@
 #include <utility>
 
 namespace adit {
+namespace {
+
+constexpr double tightest = 2.5;  // 1/m, of the axle's path
+
+}  // namespace
 
 Follower::Follower(const Route& route) {
   for (const Vec2& p : route.line)
@@ -16,6 +21,8 @@ Follower::Follower(const Route& route) {
   at_m_.assign(line_.size(), 0);
   for (size_t i = 1; i < line_.size(); ++i) at_m_[i] = at_m_[i - 1] + (line_[i] - line_[i - 1]).norm();
   length_m_ = at_m_.back();
+  for (size_t i = 1; i + 1 < line_.size(); ++i)
+    if ((line_[i] - line_[i - 1]).dot(line_[i + 1] - line_[i]) < 0) turns_m_.push_back(at_m_[i]);
 }
 
 size_t Follower::segment(double along_m) const {
@@ -34,20 +41,33 @@ double Follower::heading_rad(double along_m) const {
   return std::atan2(d.y(), d.x());
 }
 
+// Straight on where the route runs back on itself before that: first to the end, then round.
+Vec2 Follower::goal(double lookahead_m) const {
+  const auto end = std::upper_bound(turns_m_.begin(), turns_m_.end(), foot_m_);
+  if (end == turns_m_.end() || *end >= foot_m_ + lookahead_m) return point(foot_m_ + lookahead_m);
+  const double heading = heading_rad(std::nextafter(*end, 0));
+  return point(*end) + (foot_m_ + lookahead_m - *end) * Vec2(std::cos(heading), std::sin(heading));
+}
+
 Guide Follower::look(const Pose2& X_WA, double lookahead_m) {
-  // Newton's steps to the foot of the perpendicular; small ones, for the foot never leaps to another stretch.
-  for (int k = std::exchange(found_, true) ? 3 : 100; k > 0; --k) {
+  // Newton's steps to the foot of the perpendicular; small ones, for the foot never leaps to another stretch, and
+  // onward ones, for where the route runs back on itself the way out lies on the way in.
+  const bool found = std::exchange(found_, true);
+  for (int k = found ? 3 : 100; k > 0; --k) {
     const double heading = heading_rad(foot_m_);
     const double ahead = (X_WA.position() - point(foot_m_)).dot(Vec2(std::cos(heading), std::sin(heading)));
-    foot_m_ += std::clamp(ahead, -0.05, 0.05);
+    foot_m_ += std::clamp(ahead, found ? 0 : -0.05, 0.05);
   }
   Guide guide;
   guide.along_m = foot_m_;
   const double heading = heading_rad(foot_m_);
   const Vec2 off = X_WA.position() - point(foot_m_);
   guide.cross_m = -std::sin(heading) * off.x() + std::cos(heading) * off.y();
-  const Vec2 goal_A = X_WA.inverse() * point(foot_m_ + lookahead_m);
-  guide.curvature = 2 * goal_A.y() / std::max(goal_A.squaredNorm(), 0.25 * lookahead_m * lookahead_m);
+  const Vec2 goal_A = X_WA.inverse() * goal(lookahead_m);
+  const double arc = 2 * goal_A.y() / std::max(goal_A.squaredNorm(), 0.25 * lookahead_m * lookahead_m);
+  // A goal behind is what a route that runs back on itself leaves: turn round, as tightly as may be.
+  guide.curvature = goal_A.x() < 0 ? std::copysign(tightest, goal_A.y()) : std::clamp(arc, -tightest, tightest);
+  guide.curvature_ahead = std::abs(guide.curvature);
   for (double s = foot_m_; s < foot_m_ + 1.5; s += 0.25) {
     const double turn = wrap_angle(heading_rad(s + 0.75) - heading_rad(s));
     guide.curvature_ahead = std::max(guide.curvature_ahead, std::abs(turn) / 0.75);

@@ -13,11 +13,11 @@ struct Guide {
   double along_m = 0;          // of the route's length, at the foot of the axle; below 0 before its start
   double cross_m = 0;          // axle left of the route
   double curvature = 0;        // 1/m, to steer now; > 0 turns left
-  double curvature_ahead = 0;  // 1/m, greatest of the route in the next metre and a half, without sign
+  double curvature_ahead = 0;  // 1/m, greatest to be steered from here to a metre and a half ahead, without sign
 };
 
 /// Keeps a vehicle on its route by pure pursuit of a point ahead (Coulter, "Implementation of the pure pursuit path
-/// tracking algorithm", CMU-RI-TR-92-01). The foot on the route moves along it by small steps only, so that a route may
+/// tracking algorithm", CMU-RI-TR-92-01). The foot on the route only moves on, by small steps, so that a route may
 /// cross itself or run back along itself.
 class Follower {
  public:
@@ -33,9 +33,11 @@ class Follower {
 
  private:
   size_t segment(double along_m) const;
+  Vec2 goal(double lookahead_m) const;
 
   std::vector<Vec2> line_;
-  std::vector<double> at_m_;  // of each point
+  std::vector<double> at_m_;     // of each point
+  std::vector<double> turns_m_;  // where it runs back on itself
   double length_m_ = 0;
   double foot_m_ = 0;
   bool found_ = false;

@@ -38,7 +38,8 @@ Fields fields(DriveSettings& settings);
 /// route is
 ///                 narrower than the vehicle, where settings exclude one another
 /// The same arguments give the same bits; nothing depends on threads, addresses or earlier drives.
-/// Source of the pushing: docs/vehicles.md.
+/// The defaults are guesses at how a person pushes, held against the published path of the Bruceton cart (0.145 m per
+/// scan).
 Drive drive(const World& world, const Route& route, const Vehicle& vehicle, const DriveSettings& settings,
             std::uint64_t seed, const Progress& progress = {});
 

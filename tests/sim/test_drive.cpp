@@ -57,6 +57,15 @@ TEST(Drive, FollowsARouteWithTightBendsWithinAHandsBreadth) {
   }
 }
 
+TEST(Drive, TurnsRoundWhereTheRouteRunsBackOnItself) {
+  const Route route = route_through({{0, 0}, {8, 0.5}, {0, 0}}, 0);
+  const Drive d = drive(plain(level), route, load_vehicle("cart"), brisk(), 4);
+  EXPECT_EQ(d.end, DriveEnd::finished) << d.cause;
+  EXPECT_NEAR(d.driven_m, route.length_m, 0.02);
+  EXPECT_LT(cross_track_m(d.path, route), 1.1);  // a circle 0.8 m wide at the far end, run into by its half
+  EXPECT_LT((d.path.X_WB.back().translation().head<2>()).norm(), 0.15);
+}
+
 TEST(Drive, BeginsAtRestOnTheRoutesFirstPointHeadingAlongIt) {
   const Route route = route_through({{2, 1}, {8, 4}}, 0);
   const Drive d = drive(plain(level), route, load_vehicle("cart"), brisk(), 5);
