@@ -132,7 +132,8 @@ std::string notes_html(const ReportInput& in, const Plate& hero, const std::vect
   html +=
       "<li>Signed errors: distance of the map to the true surface, + where the map stands out into the true void, − "
       "where it lies in the true rock. "
-      "All pictures share one range of colours; what lies beyond takes the colour of the end.</li>\n"
+      "All pictures share one range of colours; what lies beyond takes the colour of the end; dark grey has no true "
+      "surface within 3 m.</li>\n"
       "<li>Pictures show the map laid on the truth by the best rigid fit of the paths (6 degrees of freedom), "
       "but for scan matching alone and the rounds, which begin in the true first pose.</li>\n";
   return html + "</ul>\n";

@@ -264,6 +264,8 @@ Figure rounds_plan(const Exhibit& x) {
     add_path(sheet, frame, line, ink::map, 1.2);
     for (int k = 0; k < static_cast<int>(round.nodes.size()); ++k)
       sheet.add(Disc{.centre = at(k), .radius_px = 1.8, .fill = ink::map});
+    for (const auto& [i, j] : round.correspondences)
+      for (const int k : {i, j}) sheet.add(Disc{.centre = at(k), .radius_px = 2.6, .fill = ink::raw});
     const std::string words = "round " + std::to_string(shown[s] + 1) + ": " +
                               std::to_string(round.correspondences.size()) + " correspondences";
     sheet.add(Words{corner + Vec2(14, 28), words, {.size_px = 18, .colour = ink::text, .halo_px = 2}});
@@ -272,7 +274,7 @@ Figure rounds_plan(const Exhibit& x) {
   figure.drawing = std::move(sheet);
   figure.caption =
       "The path (blue, a node every few metres) before each round, and the pairs of places that the round takes for "
-      "the same (orange). " +
+      "the same (orange, joined where they lie apart). " +
       std::string(x.input.estimate.converged ? "The pairs repeated: the alignment has converged."
                                              : "The pairs did not repeat: the alignment has not converged.");
   figure.alt = "Small plans of the path and its correspondences before each round of the alignment";

@@ -189,7 +189,12 @@ Figure chamber_view(const Exhibit& x) {
   const double radius = 22;
   const Vec3 middle = x.spots[0].p_W;
   const auto near = [&](const Vec3& p) { return (p - middle).head<2>().norm() < radius; };
-  const Vec3 low = middle - Vec3(radius, 0.8 * radius, 2), high = middle + Vec3(radius, 0.8 * radius, 2);
+  Vec3 low = middle - Vec3::Constant(2), high = middle + Vec3::Constant(2);
+  for (const Vec3& p : x.has_surface() ? x.surface_W.vertex : x.point_W) {
+    if (!p.allFinite() || !near(p)) continue;
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
   Framing framing = frame_box(low, high, -1.9, 0.75, x.settings.width_px, {70, 50});
   framing.camera.eye += 2 * radius * (framing.camera.eye - framing.camera.target).normalized();
   framing.camera.far_m += 6 * radius;
@@ -301,18 +306,23 @@ Figure interior_view(const Exhibit& x, int k) {
   camera.fov_rad = 1.15;
   camera.near_m = 0.08;
   camera.far_m = 150;
+  // Beyond it the lamp shows nothing.
+  const auto near = [&](const Vec3& p) { return (p - from->eye).norm() < 80; };
   Scene truth, map;
   Skin staff;
   add_staff(staff, x, *from);
   if (x.has_world()) {
-    truth.skins.push_back(skin_of(x.input.world.mesh, [](std::uint32_t, Label label) { return rock_colour(label); }));
+    const Mesh& mesh = x.input.world.mesh;
+    truth.skins.push_back(skin_of(
+        mesh, [](std::uint32_t, Label label) { return rock_colour(label); },
+        [&](size_t f) { return near(mesh.corner(f, 0)); }));
     truth.skins.back().rock = 1;
     truth.skins.push_back(staff);
   }
   if (x.has_surface())
-    map.skins.push_back(error_skin(x));
+    map.skins.push_back(error_skin(x, 1, 0, near));
   else
-    map.dots.push_back(error_dots(x, true));
+    map.dots.push_back(error_dots(x, true, 1, 0, near));
   map.skins.push_back(staff);
   Drawing drawing;
   drawing.width_px = 2 * width + 8;

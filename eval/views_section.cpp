@@ -128,7 +128,8 @@ Figure tilt_section(const Exhibit& x) {
   Trajectory flat;
   flat.stamp_s = e.path.stamp_s;
   for (const Pose2& X : e.planar) flat.X_WB.push_back(lift(X));
-  const Pose X_WM_flat = X_WB * level(flat.at(tm)).inverse(), X_WM_full = X_WB * level(e.path.at(tm)).inverse();
+  const Pose X_WM_flat = X_WB * level(flat.at(tm)).inverse(),
+             X_WM_full = Eigen::Translation3d(X_WB.translation() - x.X_WM * e.path.at(tm).translation()) * x.X_WM;
   const double z = X_WB.translation().z(), heights = 2;
   Drawing drawing;
   drawing.width_px = x.settings.width_px;
@@ -161,7 +162,7 @@ Figure tilt_section(const Exhibit& x) {
   figure.drawing = std::move(drawing);
   figure.caption = "An upright cut along the stretch of path that pitches the most, " +
                    plain_number(distance_along(e.path)[stretch->first], 4) +
-                   " m after the start; both are pinned to the truth in its middle by place and heading alone.";
+                   " m after the start; both are shifted to the truth in its middle.";
   figure.alt =
       "Two upright sections along the path with floor and roof points, without and with correction of tilt, over the "
       "true section";
@@ -188,6 +189,7 @@ Figure spot_view(const Exhibit& x, int k) {
     middle = X.translation().head<2>();
     across = nearest > 0.7 ? Vec2(way.normalized()) : Vec2((X.rotation() * -Vec3::UnitY()).head<2>().normalized());
   }
+  if (nearest > 3) middle = spot.p_W.head<2>() - 3 * across;
   const Vec2 ahead(-across.y(), across.x());
   auto [drawing, frame] = plan_sheet(spot.p_W.head<2>() - Vec2::Constant(half_m),
                                      spot.p_W.head<2>() + Vec2::Constant(half_m), side_px, {0, 0, 0, 0});
