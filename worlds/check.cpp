@@ -55,7 +55,7 @@ std::vector<std::vector<FaceId>> slabs_of(const SurfaceMesh& mesh, const Mesh& r
 }
 
 size_t self_intersections(const SurfaceMesh& mesh, const Mesh& raw) {
-  const auto slabs = slabs_of(mesh, raw, std::max<size_t>(1, raw.face.size() / 100000));
+  const auto slabs = slabs_of(mesh, raw, std::max<size_t>(1, raw.face.size() / 50000));
   std::vector<std::vector<Pair>> found(slabs.size());
   parallel_for(slabs.size(), [&](size_t k) { pmp::self_intersections(slabs[k], mesh, std::back_inserter(found[k])); });
   std::vector<Pair> all;  // a pair may be found in two slabs

@@ -119,14 +119,16 @@ double beyond_end(const Drift& d, bool at_b, const Vec2& p) {
 
 double signed_distance(const Drift& d, size_t k, const Vec2& p) {
   const Vec2 a = d.line[k], u = d.line[k + 1] - a, w = p - a;
-  const double t = std::clamp(w.dot(u) / u.squaredNorm(), 0.0, 1.0);
-  const bool left = u.x() * w.y() - u.y() * w.x() > 0;
-  const std::vector<double>& half = left ? d.left : d.right;
-  double distance = (w - t * u).norm() - (half[k] + t * (half[k + 1] - half[k]));
+  const double along = w.dot(u) / u.squaredNorm(), t = std::clamp(along, 0.0, 1.0);
+  const double across = (u.x() * w.y() - u.y() * w.x()) / u.norm();
+  const std::vector<double>& half = across > 0 ? d.left : d.right;
+  const size_t last = d.line.size() - 2;
+  // Beyond a dead end's node the ribs run on to the face.
+  const bool runs_on = (d.flat_a && k == 0 && along < 0) || (d.flat_b && k == last && along > 1);
+  double distance = (runs_on ? std::abs(across) : (w - t * u).norm()) - (half[k] + t * (half[k + 1] - half[k]));
   const size_t reach = static_cast<size_t>(face_reach_m / step_m);
   if (d.flat_a && k < reach) distance = rounded_max(distance, beyond_end(d, false, p), face_corner_m);
-  if (d.flat_b && k + 1 + reach >= d.line.size())
-    distance = rounded_max(distance, beyond_end(d, true, p), face_corner_m);
+  if (d.flat_b && k + reach > last) distance = rounded_max(distance, beyond_end(d, true, p), face_corner_m);
   return distance;
 }
 

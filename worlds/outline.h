@@ -16,7 +16,8 @@ struct Outline {
 };
 
 /// Unites the drifts and rounds the corners of the rock by corner_radius_m: rock is kept where a disc of this radius
-/// fits into it (the morphological opening; exact distances, lattice of 0.2 m, lines good to some millimetres).
+/// fits into it (the morphological opening; exact distances on a lattice of 0.2 m: straight ribs are good to some
+/// millimetres, corners to some centimetres).
 Outline outline_of(const std::vector<Drift>& drifts, double corner_radius_m);
 
 /// The passage nearest to a point in or near the void.

@@ -4,6 +4,7 @@
 #include "worlds/route_graph.h"
 
 #include <algorithm>
+#include <map>
 
 namespace adit {
 namespace {
@@ -23,10 +24,34 @@ std::vector<int> junctions_of(const World& world, const std::vector<char>& passa
   return all;
 }
 
-int start_of(const World& world, const RouteSettings& s, const std::vector<int>& among, std::uint64_t seed) {
-  if (s.start < 0) return among[random_bits(seed, Draw::route, 1000) % among.size()];
-  check_junction(world, "route.start", s.start);
-  return s.start;
+size_t drawn_start(size_t count, std::uint64_t seed) {
+  return random_bits(seed, Draw::route, 1000) % count;
+}
+
+// Whether some passages are driven again in the same direction and some in the opposite one.
+bool both_ways(const std::vector<Leg>& legs) {
+  std::map<int, bool> first;
+  bool same = false, opposite = false;
+  for (const Leg& leg : legs) {
+    const auto [known, fresh] = first.emplace(leg.passage, leg.forward);
+    if (!fresh) (known->second == leg.forward ? same : opposite) = true;
+  }
+  return same && opposite;
+}
+
+// The first tour from one of the junctions that has both; what is driven twice can make that impossible without a
+// U-turn, and more of it possible again. Else the first tour.
+std::vector<Leg> tour_both_ways(const World& world, const std::vector<char>& core, const std::vector<int>& starts,
+                                double twice_share, std::uint64_t seed) {
+  std::vector<Leg> first;
+  for (double share : {twice_share, twice_share + 0.15, twice_share + 0.3}) {
+    for (int start : starts) {
+      std::vector<Leg> legs = tour(world, core, start, std::min(share, 0.9), seed);
+      if (both_ways(legs) || twice_share <= 0) return legs;
+      if (first.empty()) first = std::move(legs);
+    }
+  }
+  return first;
 }
 
 std::vector<Leg> loops(const World& world, const RouteSettings& s, std::uint64_t seed) {
@@ -34,13 +59,20 @@ std::vector<Leg> loops(const World& world, const RouteSettings& s, std::uint64_t
   const std::vector<int> among = junctions_of(world, core);
   if (among.empty())
     throw Error("route.mode = \"loops\": this mine has no loop; use \"there_and_back\" or \"waypoints\"");
-  const int start = start_of(world, s, among, seed);
-  // From outside of the loops the shortest way in.
-  const Ways ways(world, start, {});
-  const int enter = *std::min_element(among.begin(), among.end(),
-                                      [&](int a, int b) { return ways.distance_m(a) < ways.distance_m(b); });
-  std::vector<Leg> legs = ways.to(enter);
-  const std::vector<Leg> round = tour(world, core, enter, s.twice_share, seed);
+  std::vector<int> starts = among;
+  std::rotate(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(drawn_start(starts.size(), seed)),
+              starts.end());
+  starts.resize(std::min<size_t>(starts.size(), 12));
+  std::vector<Leg> legs;
+  if (s.start >= 0) {
+    // From outside of the loops the shortest way in.
+    check_junction(world, "route.start", s.start);
+    const Ways ways(world, s.start, {});
+    const auto nearer = [&](int a, int b) { return ways.distance_m(a) < ways.distance_m(b); };
+    starts = {*std::min_element(among.begin(), among.end(), nearer)};
+    legs = ways.to(starts[0]);
+  }
+  const std::vector<Leg> round = tour_both_ways(world, core, starts, s.twice_share, seed);
   legs.insert(legs.end(), round.begin(), round.end());
   return legs;
 }
@@ -65,7 +97,8 @@ std::vector<Leg> there_and_back(const World& world, const RouteSettings& s, std:
   if (among.empty())
     for (size_t j = 0; j < world.junctions.size(); ++j)
       if (world.junctions[j].degree() == 1) among.push_back(static_cast<int>(j));
-  const int start = start_of(world, s, among, seed);
+  if (s.start >= 0) check_junction(world, "route.start", s.start);
+  const int start = s.start >= 0 ? s.start : among[drawn_start(among.size(), seed)];
   const Ways ways(world, start, {});
   int farthest = start;
   for (size_t j = 0; j < world.junctions.size(); ++j)

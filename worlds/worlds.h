@@ -17,7 +17,7 @@ struct PanelSettings {
   int entries = 2;
   int crosscuts = 4;
   double entry_spacing_m = 20;     // between centre lines
-  double crosscut_spacing_m = 27;  // between centre lines
+  double crosscut_spacing_m = 30;  // between centre lines
   double spacing_sd_m = 1;         // scatter of both
   double crosscut_angle_deg = 90;  // to the entries
   double stagger = 0;              // every second row of crosscuts is moved by this share of the spacing
