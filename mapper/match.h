@@ -14,7 +14,7 @@ struct MatchSettings {
   double gate_end_m = 0.25;  // and at the last
   double robust_sigmas = 3;  // residuals beyond count less and less
   int iterations = 20;
-  double map_sigma_m = 0.01;      // of a surfel along its normal: how far the rib leaves its line between beams
+  double map_sigma_m = 0.02;      // of a surfel along its normal: how far the rib leaves its line between beams
   double weak_sigma_m = 0.03;     // directions in which a match is less certain than this are left to the prior
   double min_inlier_share = 0.4;  // of a scan's points, for a match to be one
 };

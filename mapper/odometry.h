@@ -28,8 +28,8 @@ struct Odometry {
 struct OdometrySettings {
   ScanPointSettings points;
   MatchSettings match;
-  int key_scans = 20;       // of the past that make the local map
-  double key_step_m = 0.4;  // a scan this far from the last key scan is a new one
+  int key_scans = 40;       // of the past that make the local map
+  double key_step_m = 0.2;  // a scan this far from the last key scan is a new one
   double key_step_deg = 10;
   double speed_change_m_s2 = 0.5;  // 1 sd of the change of speed, for the prediction
   double turn_change_deg_s2 = 40;
