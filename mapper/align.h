@@ -72,6 +72,8 @@ struct RobustSettings {
   double reach_m = 8;          // most that the path may be thought to be out when candidates are sought
   double least_reach_m = 0.3;  // that a settled path is thought to be out
   double doubt = 2;            // times the path's stated sigma is believed: errors of neighbouring steps hang together
+  double wide_m = 1;           // a reach beyond this is searched for few candidates first
+  double wide_step_m = 7;      // way between those
   double parallel_deg = 25;
   double orthogonal_deg = 35;
   double gap_m = 20;

@@ -97,7 +97,8 @@ int nearest_node(const Problem& p, int scan) {
   return along[p.chain.scan[b]] - along[scan] < along[scan] - along[p.chain.scan[a]] ? b : a;
 }
 
-/// Pairs of nodes that meet by the criteria, within the farthest reach, and how well the path knows them.
+/// Pairs of nodes that meet by the criteria, within the farthest reach, and are not measured yet; and how well the path
+/// knows them.
 std::vector<Candidate> candidates(const Problem& p, const std::vector<Pose2>& X_MB) {
   const RobustSettings& s = p.settings;
   std::vector<int> from;
@@ -106,8 +107,11 @@ std::vector<Candidate> candidates(const Problem& p, const std::vector<Pose2>& X_
     if (p.chain.along_m[i] >= next_m) from.push_back(i), next_m = p.chain.along_m[i] + s.closure_m;
   const EncounterCriteria criteria{s.near_m + s.reach_m, s.parallel_deg * degree, s.orthogonal_deg * degree, s.gap_m};
   std::set<std::pair<int, int>> known;
-  for (const Encounter& e : find_encounters(p.chain, X_MB, from, criteria))
-    known.emplace(nearest_node(p, e.foot_scan), p.before[e.scan]);
+  for (const Encounter& e : find_encounters(p.chain, X_MB, from, criteria)) {
+    const std::pair<int, int> pair(nearest_node(p, e.foot_scan), p.before[e.scan]);
+    const auto it = p.loops.find(pair);
+    if (it == p.loops.end() || !it->second.usable()) known.insert(pair);
+  }
   const std::vector<std::pair<int, int>> pairs(known.begin(), known.end());
   const std::vector<Matrix3> covariance = relative_covariances(graph_of(p), pairs);
   std::vector<Candidate> result;
@@ -130,9 +134,27 @@ bool worthwhile(const Problem& p, const Candidate& c) {
   const auto it = p.loops.find({c.a, c.b});
   if (it == p.loops.end()) return true;
   const Loop& loop = it->second;
-  if (loop.usable()) return false;
   const double moved_m = (loop.guess.inverse() * c.X_ab).position().norm();
   return moved_m > p.settings.least_reach_m || reach_m(c, p.settings) < 0.5 * loop.reach_m;
+}
+
+/// Thins what needs a wide search to one in wide_step_m of either passage: once these are closed, the others are
+/// narrow.
+void thin_wide(const Problem& p, std::vector<Candidate>& fresh) {
+  const RobustSettings& s = p.settings;
+  const auto along_m = [&](int node) { return p.chain.along_m[p.chain.scan[node]]; };
+  std::vector<Candidate> kept, wide;
+  for (const Candidate& c : fresh) {
+    const bool near_one = std::any_of(wide.begin(), wide.end(), [&](const Candidate& w) {
+      return std::abs(along_m(w.a) - along_m(c.a)) < s.wide_step_m &&
+             std::abs(along_m(w.b) - along_m(c.b)) < s.wide_step_m;
+    });
+    const bool is_wide = reach_m(c, s) > s.wide_m;
+    if (is_wide && near_one) continue;
+    if (is_wide) wide.push_back(c);
+    kept.push_back(c);
+  }
+  fresh = kept;
 }
 
 /// What is to be matched now: only as far as the path knows where to look, to a sigma of limit_m.
@@ -142,6 +164,7 @@ std::vector<Candidate> new_candidates(const Problem& p, const std::vector<Candid
     if (c.sigma_m <= limit_m && c.X_ab.position().norm() <= p.settings.near_m + reach_m(c, p.settings) &&
         worthwhile(p, c))
       result.push_back(c);
+  thin_wide(p, result);
   return result;
 }
 
@@ -277,6 +300,8 @@ Fields fields(RobustSettings& s) {
       {"near_m", &s.near_m, "distance between two passages of a place, if the path were exact", 0.1, 50},
       {"reach_m", &s.reach_m, "most that the path may be thought to be out", 0.1, 100},
       {"least_reach_m", &s.least_reach_m, "that a settled path is thought to be out", 0.05, 10},
+      {"wide_m", &s.wide_m, "a reach beyond this is searched for few candidates first", 0.1, 100},
+      {"wide_step_m", &s.wide_step_m, "way between those", 0, 100},
       {"doubt", &s.doubt, "times the path's stated sigma is believed", 0.1, 100},
       {"parallel_deg", &s.parallel_deg, "between the directions of two passages", 1, 60},
       {"orthogonal_deg", &s.orthogonal_deg, "between the joining line and the perpendicular of either passage", 1, 60},

@@ -91,6 +91,8 @@ struct Search {
     const Vec2 d = position(foot) - X_MB[s].position();
     if (d.norm() > criteria.near_m || chain.along_m[s] - chain.along_m[i] < criteria.gap_m) return false;
     if (between_lines(direction_rad[s], direction_rad[i]) > criteria.parallel_rad) return false;
+    if (between_lines(X_MB[s].yaw_rad, X_MB[i].yaw_rad) > criteria.parallel_rad)
+      return false;  // one of them is turning
     const double allowed_m = std::max(slack_m, d.norm() * std::sin(criteria.orthogonal_rad));
     return std::abs(unit(direction_rad[s]).dot(d)) <= allowed_m && std::abs(unit(direction_rad[i]).dot(d)) <= allowed_m;
   }

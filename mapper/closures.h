@@ -22,7 +22,7 @@ struct Encounter {
 /// The paper's three criteria, and what counts as another passage.
 struct EncounterCriteria {
   double near_m = 2.5;
-  double parallel_rad = 0.44;    // between the directions of travel, modulo a half turn
+  double parallel_rad = 0.44;    // between the directions of travel and the headings, modulo a half turn
   double orthogonal_rad = 0.52;  // between the joining line and the perpendicular of either direction
   double gap_m = 20;             // of way between the two
 };

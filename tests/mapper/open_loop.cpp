@@ -142,15 +142,19 @@ int wrong_places(const std::vector<Closure>& closures, const std::vector<Pose2>&
 }
 
 double recall(const std::vector<Closure>& closures, const std::vector<Pose2>& X_true) {
+  std::vector<double> way_m(X_true.size(), 0);
+  for (size_t i = 1; i < X_true.size(); ++i)
+    way_m[i] = way_m[i - 1] + (X_true[i].position() - X_true[i - 1].position()).norm();
   int met = 0, closed = 0;
-  const int n = static_cast<int>(X_true.size()), every = static_cast<int>(5 / step_m),
-            gap = static_cast<int>(20 / step_m);
-  for (int j = 0; j < n; j += every) {
+  double next_m = 0;
+  for (size_t j = 0; j < X_true.size(); ++j) {
+    if (way_m[j] < next_m) continue;
+    next_m = way_m[j] + 5;
     bool meets = false, has = false;
-    for (int i = 0; i < j - gap && !meets; ++i)
+    for (size_t i = 0; i < j && way_m[i] < way_m[j] - 20 && !meets; ++i)
       meets = (X_true[i].position() - X_true[j].position()).norm() < 2.0 &&
               between_lines(X_true[i].yaw_rad, X_true[j].yaw_rad) < pi / 12;
-    for (const Closure& c : closures) has = has || (c.accepted && std::abs(c.j - j) < every);
+    for (const Closure& c : closures) has = has || (c.accepted && std::abs(way_m[c.j] - way_m[j]) < 5);
     met += meets;
     closed += meets && has;
   }
