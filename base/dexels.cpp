@@ -274,34 +274,72 @@ struct DexelUnion::Impl {
   std::vector<Tile> tiles;
 };
 
+namespace {
+
+// Corners 0..3 of a tetrahedron; faces by their edges ab, bc, ac with a < b < c.
+constexpr int edge_ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+struct FaceEdges {
+  int a, b, c, ab, bc, ac;
+};
+constexpr FaceEdges face_edges[4] = {{0, 1, 2, 0, 3, 1}, {0, 1, 3, 0, 4, 2}, {0, 2, 3, 1, 5, 2}, {1, 2, 3, 3, 5, 4}};
+
+/// Bit f of entry m: an axis on those sides of the six edges (bit e of m: right of edge e) passes through face f.
+constexpr std::array<std::uint8_t, 64> crossed_faces = [] {
+  std::array<std::uint8_t, 64> table{};
+  for (int sides = 0; sides < 64; ++sides)
+    for (int f = 0; f < 4; ++f) {
+      const int ab = sides >> face_edges[f].ab & 1, bc = sides >> face_edges[f].bc & 1,
+                ac = sides >> face_edges[f].ac & 1;
+      if (ab == bc && ab != ac) table[sides] |= static_cast<std::uint8_t>(1 << f);
+    }
+  return table;
+}();
+
+}  // namespace
+
 void DexelUnion::Impl::add_to_tile(size_t t, const std::array<Corner, 4>& corner) {
-  const Range whole_columns = {static_cast<int>(t % across) * tile_cells,
-                               static_cast<int>(t % across + 1) * tile_cells};
-  const Range whole_rows = {static_cast<int>(t / across) * tile_cells, static_cast<int>(t / across + 1) * tile_cells};
+  const int first_i = static_cast<int>(t % across) * tile_cells, first_j = static_cast<int>(t / across) * tile_cells;
   const auto [x_low, x_high] = std::minmax({corner[0].x, corner[1].x, corner[2].x, corner[3].x});
   const auto [y_low, y_high] = std::minmax({corner[0].y, corner[1].y, corner[2].y, corner[3].y});
-  const Range columns = overlap(whole_columns, axes_within(x_low, x_high, grid, grid.width));
-  const Range rows = overlap(whole_rows, axes_within(y_low, y_high, grid, grid.height));
-  if (columns.begin >= columns.end || rows.begin >= rows.end) return;
-  constexpr Interval nothing = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  std::array<Interval, tile_cells * tile_cells> met;
-  const auto slot = [&](int i, int j) { return (j - whole_rows.begin) * tile_cells + i - whole_columns.begin; };
-  for (int j = rows.begin; j < rows.end; ++j)
-    std::fill(&met[slot(columns.begin, j)], &met[slot(columns.end - 1, j)] + 1, nothing);
-  constexpr int faces[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
-  for (const auto& f : faces)
-    crossings(corner[f[0]], corner[f[1]], corner[f[2]], grid, axes, columns, rows, [&](int i, int j, double z, bool) {
-      Interval& s = met[slot(i, j)];
-      s.low_m = std::min(s.low_m, z);
-      s.high_m = std::max(s.high_m, z);
-    });
+  const Range columns = overlap({first_i, first_i + tile_cells}, axes_within(x_low, x_high, grid, grid.width));
+  const Range rows = overlap({first_j, first_j + tile_cells}, axes_within(y_low, y_high, grid, grid.height));
+  // cross() of each edge is a part by row less a part by column.
+  std::int64_t by_column[6][tile_cells], ties[6];
+  for (int e = 0; e < 6; ++e) {
+    const Corner &a = corner[edge_ends[e][0]], &b = corner[edge_ends[e][1]];
+    ties[e] = tie(a, b);
+    for (int i = columns.begin; i < columns.end; ++i) by_column[e][i - first_i] = (b.y - a.y) * (axes.x[i] - a.x);
+  }
   Tile& tile = tiles[t];
-  for (int j = rows.begin; j < rows.end; ++j)
-    for (int i = columns.begin; i < columns.end; ++i)
-      if (const Interval s = met[slot(i, j)]; s.low_m < s.high_m) {
-        if (tile.empty()) tile.resize(tile_cells * tile_cells);
-        insert(tile[slot(i, j)], s);
+  for (int j = rows.begin; j < rows.end; ++j) {
+    std::int64_t by_row[6];
+    for (int e = 0; e < 6; ++e) {
+      const Corner &a = corner[edge_ends[e][0]], &b = corner[edge_ends[e][1]];
+      by_row[e] = (b.x - a.x) * (axes.y[j] - a.y);
+    }
+    for (int i = columns.begin; i < columns.end; ++i) {
+      std::int64_t w[6];
+      unsigned sides = 0;
+      for (int e = 0; e < 6; ++e) {
+        w[e] = by_row[e] - by_column[e][i - first_i];
+        sides |= static_cast<unsigned>(w[e] + ties[e] < 0) << e;
       }
+      if (crossed_faces[sides] == 0) continue;
+      Interval s = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+      for (int f = 0; f < 4; ++f) {
+        if (!(crossed_faces[sides] >> f & 1)) continue;
+        const FaceEdges& face = face_edges[f];
+        const auto wa = static_cast<double>(w[face.bc]), wb = static_cast<double>(-w[face.ac]),
+                   wc = static_cast<double>(w[face.ab]);
+        const double z = (wa * corner[face.a].z + wb * corner[face.b].z + wc * corner[face.c].z) / (wa + wb + wc);
+        s.low_m = std::min(s.low_m, z);
+        s.high_m = std::max(s.high_m, z);
+      }
+      if (s.low_m >= s.high_m) continue;
+      if (tile.empty()) tile.resize(tile_cells * tile_cells);
+      insert(tile[static_cast<size_t>(j - first_j) * tile_cells + (i - first_i)], s);
+    }
+  }
 }
 
 DexelUnion::DexelUnion(const Dexels& like) : impl_(std::make_unique<Impl>(like)) {}
