@@ -192,6 +192,18 @@ int report_command(const std::vector<std::string>& outs, const Common& common, C
   return 0;
 }
 
+int render_command(const std::string& out, const std::string& view, const Common& common, Console& console) {
+  const RunFolder run = load_run(out, {"", -1, common.assignments});
+  const std::string file = common.out.empty() ? view + ".png" : common.out;
+  const Picture picture = render_view(
+      view, {run.world, run.recording.log, run.recording.truth, run.estimate, run.score, resolved_toml(run.scenario), run.scenario.name},
+      run.scenario.report);
+  write_png(file, picture);
+  console.result("picture: " + file);
+  console.json(ordered_json{{"picture", file}}.dump());
+  return 0;
+}
+
 int list_command(const std::string& what, Console& console) {
   const std::vector<std::pair<std::string, std::string>> folders{
       {"scenarios", "cli/scenarios"}, {"vehicles", "sim/vehicles"}, {"rigs", "sensors/rigs"}, {"lasers", "sensors/lasers"}};
