@@ -78,7 +78,7 @@ double Drift::width_m() const {
   return sum / static_cast<double>(left.size());
 }
 
-std::vector<Drift> drive_passages(const Plan& plan, const WorldSettings& s, std::uint64_t seed) {
+std::vector<Drift> drive_passages(const MinePlan& plan, const WorldSettings& s, std::uint64_t seed) {
   const Waves::Spectrum wander{s.wander_m, s.wander_length_m / 4, 1.5, 0, 64, 2.5};
   const Waves east(wander, seed, Draw::world_wander, 0, true), north(wander, seed, Draw::world_wander, 1, true);
   const Waves::Spectrum wall{s.wall_wander_m, 2, 1.5, 3, 64, 2.5};

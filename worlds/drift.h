@@ -19,7 +19,7 @@ struct Drift {
 
 /// How the passages of a plan were driven, one for each, by the settings' chance. All lines that meet at a node of the
 /// plan meet in one point, with one width.
-std::vector<Drift> drive_passages(const Plan& plan, const WorldSettings& settings, std::uint64_t seed);
+std::vector<Drift> drive_passages(const MinePlan& plan, const WorldSettings& settings, std::uint64_t seed);
 
 /// Signed distance of a point from the ribs beside piece `segment` of a drift, and from the face of a dead end near it;
 /// negative inside.

@@ -45,25 +45,25 @@ struct Mark {
 // The nodes of each entry, by x.
 using Entries = std::vector<std::vector<Mark>>;
 
-int add_node(Plan& plan, const Vec2& p) {
+int add_node(MinePlan& plan, const Vec2& p) {
   plan.nodes.push_back(p);
   plan.cut.push_back(0);
   return static_cast<int>(plan.nodes.size()) - 1;
 }
 
-void join(Plan& plan, int a, int b, double width_m) {
+void join(MinePlan& plan, int a, int b, double width_m) {
   plan.passages.push_back({a, b, width_m, {plan.nodes[a], plan.nodes[b]}});
 }
 
 // A node of an entry at x; one that is there already within half a width is used again.
-int node_at(Plan& plan, std::vector<Mark>& entry, double x, double y, double width_m) {
+int node_at(MinePlan& plan, std::vector<Mark>& entry, double x, double y, double width_m) {
   for (const Mark& m : entry)
     if (std::abs(m.x - x) < 0.5 * width_m) return m.node;
   entry.push_back({x, add_node(plan, {x, y})});
   return entry.back().node;
 }
 
-void add_crosscuts(Plan& plan, const PanelSettings& s, const std::vector<double>& y, Entries& entries,
+void add_crosscuts(MinePlan& plan, const PanelSettings& s, const std::vector<double>& y, Entries& entries,
                    std::uint64_t seed) {
   const double lean = 1 / std::tan(s.crosscut_angle_deg * std::numbers::pi / 180);
   const std::vector<double> x = offsets(s.crosscuts, s.crosscut_spacing_m, s.spacing_sd_m, seed, 1);
@@ -80,7 +80,8 @@ void add_crosscuts(Plan& plan, const PanelSettings& s, const std::vector<double>
     for (double at : x) node_at(plan, entries[0], at, y[0], s.width_m);
 }
 
-void add_stub(Plan& plan, const PanelSettings& s, int node, double direction, std::uint64_t which, std::uint64_t seed) {
+void add_stub(MinePlan& plan, const PanelSettings& s, int node, double direction, std::uint64_t which,
+              std::uint64_t seed) {
   if (uniform(seed, Draw::world_layout, 2, which) >= s.stub_share) return;
   const double length = s.stub_length_m * (0.8 + 0.4 * uniform(seed, Draw::world_layout, 3, which));
   if (length < s.width_m) return;  // it would drown in its junction
@@ -90,9 +91,9 @@ void add_stub(Plan& plan, const PanelSettings& s, int node, double direction, st
 
 }  // namespace
 
-Plan panel_plan(const PanelSettings& s, std::uint64_t seed) {
+MinePlan panel_plan(const PanelSettings& s, std::uint64_t seed) {
   check_panel(s);
-  Plan plan;
+  MinePlan plan;
   const std::vector<double> y = offsets(s.entries, s.entry_spacing_m, s.spacing_sd_m, seed, 0);
   Entries entries(s.entries);
   add_crosscuts(plan, s, y, entries, seed);

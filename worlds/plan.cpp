@@ -38,7 +38,7 @@ std::optional<Crossing> crossing_of(const std::vector<Vec2>& p, const std::vecto
 }
 
 // Cuts passage k at a point of its segment; the second half goes to the end of the list.
-void split(Plan& plan, size_t k, size_t segment, const Vec2& point, int node) {
+void split(MinePlan& plan, size_t k, size_t segment, const Vec2& point, int node) {
   PlanPassage first = plan.passages[k], second = first;
   first.line.resize(segment + 1);
   first.line.push_back(point);
@@ -50,7 +50,7 @@ void split(Plan& plan, size_t k, size_t segment, const Vec2& point, int node) {
   plan.passages.push_back(second);
 }
 
-bool split_first_crossing(Plan& plan) {
+bool split_first_crossing(MinePlan& plan) {
   for (size_t k = 0; k < plan.passages.size(); ++k) {
     for (size_t l = k + 1; l < plan.passages.size(); ++l) {
       const auto crossing = crossing_of(plan.passages[k].line, plan.passages[l].line);
@@ -66,7 +66,7 @@ bool split_first_crossing(Plan& plan) {
   return false;
 }
 
-std::vector<int> parts_of(const Plan& plan) {
+std::vector<int> parts_of(const MinePlan& plan) {
   std::vector<int> part(plan.nodes.size());
   for (size_t i = 0; i < part.size(); ++i) part[i] = static_cast<int>(i);
   for (bool changed = true; changed;) {
@@ -84,7 +84,7 @@ std::string at(const Vec2& p) {
   return "(" + std::to_string(std::lround(p.x())) + ", " + std::to_string(std::lround(p.y())) + ")";
 }
 
-void check_connected(const std::string& name, const Plan& plan) {
+void check_connected(const std::string& name, const MinePlan& plan) {
   const std::vector<int> part = parts_of(plan);
   for (size_t i = 1; i < part.size(); ++i)
     if (part[i] != part[0])
@@ -95,16 +95,16 @@ void check_connected(const std::string& name, const Plan& plan) {
 
 }  // namespace
 
-Plan split_crossings(Plan plan) {
+MinePlan split_crossings(MinePlan plan) {
   while (split_first_crossing(plan)) {
   }
   return plan;
 }
 
-Plan make_plan(const WorldSettings& s, std::uint64_t seed) {
+MinePlan make_plan(const WorldSettings& s, std::uint64_t seed) {
   const bool from_file = s.kind == "plan";
   const std::string name = from_file ? "world.plan = \"" + s.plan + "\"" : "world.panel";
-  Plan plan = split_crossings(from_file ? read_plan(s) : panel_plan(s.panel, seed));
+  MinePlan plan = split_crossings(from_file ? read_plan(s) : panel_plan(s.panel, seed));
   if (plan.passages.empty())
     throw Error(name + ": no passage lies in the part that is selected (world.x_min ... world.y_max)");
   check_connected(name, plan);

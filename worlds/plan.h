@@ -17,20 +17,20 @@ struct PlanPassage {
 
 /// Centre lines with widths: one connected graph. Nodes at which the plan was cut off by a selection's border are
 /// marked.
-struct Plan {
+struct MinePlan {
   std::vector<Vec2> nodes;
   std::vector<char> cut;  // (nodes)
   std::vector<PlanPassage> passages;
 };
 
 /// The plan that the settings ask for, checked: crossings are nodes, all is connected, widths are positive.
-Plan make_plan(const WorldSettings& settings, std::uint64_t seed);
+MinePlan make_plan(const WorldSettings& settings, std::uint64_t seed);
 
 /// The two kinds.
-Plan read_plan(const WorldSettings& settings);
-Plan panel_plan(const PanelSettings& settings, std::uint64_t seed);
+MinePlan read_plan(const WorldSettings& settings);
+MinePlan panel_plan(const PanelSettings& settings, std::uint64_t seed);
 
 /// Makes each crossing of two passages a node.
-Plan split_crossings(Plan plan);
+MinePlan split_crossings(MinePlan plan);
 
 }  // namespace adit

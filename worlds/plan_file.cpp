@@ -116,7 +116,7 @@ class Selection {
     plan_.passages.push_back(std::move(p));
   }
 
-  Plan take() { return std::move(plan_); }
+  MinePlan take() { return std::move(plan_); }
 
  private:
   int new_node(const Vec2& p, char cut) {
@@ -133,12 +133,12 @@ class Selection {
   Box2 box_;
   std::map<int, Vec2> inside_;
   std::map<int, int> number_;
-  Plan plan_;
+  MinePlan plan_;
 };
 
 }  // namespace
 
-Plan read_plan(const WorldSettings& s) {
+MinePlan read_plan(const WorldSettings& s) {
   if (s.x_min >= s.x_max || s.y_min >= s.y_max)
     throw Error(
         "world.x_min, x_max, y_min, y_max: the part selected is empty; each minimum must lie below its maximum");

@@ -29,7 +29,7 @@ void check_settings(const WorldSettings& s) {
     throw Error("world.roll_min_m = " + text(s.roll_min_m) + ": must not be above world.roll_max_m");
 }
 
-Vec2 middle_of(const Plan& plan) {
+Vec2 middle_of(const MinePlan& plan) {
   Vec2 low = plan.nodes[0], high = low;
   for (const Vec2& p : plan.nodes) {
     low = low.cwiseMin(p);
@@ -39,7 +39,7 @@ Vec2 middle_of(const Plan& plan) {
 }
 
 // Where a rib is the face at which a passage was cut off by the selection's border.
-bool is_cap(const Plan& plan, const std::vector<Drift>& drifts, const Vec2& p) {
+bool is_cap(const MinePlan& plan, const std::vector<Drift>& drifts, const Vec2& p) {
   for (size_t i = 0; i < drifts.size(); ++i) {
     const Drift& d = drifts[i];
     for (bool at_b : {false, true}) {
@@ -73,7 +73,7 @@ Passage passage_of(const PlanPassage& p, const Drift& d, const Terrain& terrain)
   return passage;
 }
 
-void add_graph(const Plan& plan, const std::vector<Drift>& drifts, const Terrain& terrain, World& world) {
+void add_graph(const MinePlan& plan, const std::vector<Drift>& drifts, const Terrain& terrain, World& world) {
   world.junctions.resize(plan.nodes.size());
   for (size_t i = 0; i < drifts.size(); ++i) {
     const PlanPassage& p = plan.passages[i];
@@ -104,7 +104,7 @@ void add_numbers(const std::vector<Loop>& mid_height, World& world) {
 
 World make_world(const WorldSettings& s, std::uint64_t seed, const Progress& progress) {
   check_settings(s);
-  const Plan plan = make_plan(s, seed);
+  const MinePlan plan = make_plan(s, seed);
   progress("laying out the mine", 0, 4);
   const std::vector<Drift> drifts = drive_passages(plan, s, seed);
   const Outline outline = outline_of(drifts, s.corner_radius_m);

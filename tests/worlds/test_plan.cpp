@@ -17,14 +17,14 @@ WorldSettings bruceton() {
   return s;
 }
 
-double length_of(const Plan& plan) {
+double length_of(const MinePlan& plan) {
   double length = 0;
   for (const PlanPassage& p : plan.passages)
     for (size_t i = 1; i < p.line.size(); ++i) length += (p.line[i] - p.line[i - 1]).norm();
   return length;
 }
 
-int loops_of(const Plan& plan) {
+int loops_of(const MinePlan& plan) {
   return static_cast<int>(plan.passages.size()) - static_cast<int>(plan.nodes.size()) + 1;
 }
 
@@ -54,7 +54,7 @@ std::string square(const std::string& width = "3.5", const std::string& more = "
 }
 
 TEST(Plan, BrucetonHasTheSizeThatThePublishedPlanHas) {
-  const Plan plan = make_plan(bruceton(), 1);
+  const MinePlan plan = make_plan(bruceton(), 1);
   EXPECT_NEAR(length_of(plan), 1957, 0.02 * 1957);  // the plan's own edge list; lines are good to 2 m
   EXPECT_EQ(plan.nodes.size(), 72u);                // 71 and the crossing of two passages at (-270, 74)
   EXPECT_EQ(loops_of(plan), 22);
@@ -69,9 +69,9 @@ TEST(Plan, BothBrucetonMinesAreOneWithTheWallsOpenAndTwoWithout) {
 }
 
 TEST(Plan, ACrossingBecomesANode) {
-  Plan plan{{{0, 0}, {20, 0}, {10, -10}, {10, 10}},
-            {0, 0, 0, 0},
-            {{0, 1, 3, {{0, 0}, {20, 0}}}, {2, 3, 3, {{10, -10}, {10, 10}}}}};
+  MinePlan plan{{{0, 0}, {20, 0}, {10, -10}, {10, 10}},
+                {0, 0, 0, 0},
+                {{0, 1, 3, {{0, 0}, {20, 0}}}, {2, 3, 3, {{10, -10}, {10, 10}}}}};
   plan = split_crossings(plan);
   ASSERT_EQ(plan.nodes.size(), 5u);
   EXPECT_NEAR((plan.nodes[4] - Vec2(10, 0)).norm(), 0, 1e-12);
@@ -80,7 +80,7 @@ TEST(Plan, ACrossingBecomesANode) {
 }
 
 TEST(Plan, PassagesThatOnlyShareANodeAreNotSplit) {
-  const Plan plan = make_plan(with_plan("square", square()), 1);
+  const MinePlan plan = make_plan(with_plan("square", square()), 1);
   EXPECT_EQ(plan.passages.size(), 4u);
   EXPECT_EQ(loops_of(plan), 1);
 }
@@ -88,7 +88,7 @@ TEST(Plan, PassagesThatOnlyShareANodeAreNotSplit) {
 TEST(Plan, APassageThatLeavesTheSelectionIsCutAtItsBorder) {
   WorldSettings s = with_plan("cut", square());
   s.x_max = 20;
-  const Plan plan = make_plan(s, 1);
+  const MinePlan plan = make_plan(s, 1);
   int cut = 0;
   for (size_t i = 0; i < plan.nodes.size(); ++i) {
     if (!plan.cut[i]) continue;

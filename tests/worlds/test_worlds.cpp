@@ -126,7 +126,7 @@ TEST(MakeWorld, WhereTheSelectionCutsAPassageTheFaceIsACap) {
   s.x_max = -200;
   const World world = make_world(s, 1);
   // Each is about 3.7 m x 1.9 m; its corners of 0.7 m are rock, a column of faces more or less.
-  const Plan plan = make_plan(s, 1);
+  const MinePlan plan = make_plan(s, 1);
   const double cut = static_cast<double>(std::count(plan.cut.begin(), plan.cut.end(), 1));
   ASSERT_GE(cut, 3);
   EXPECT_GT(area_of(world.mesh, Label::cap), cut * (3.7 - 1.4 - 0.8) * 1.9);
