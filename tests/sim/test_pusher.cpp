@@ -9,7 +9,7 @@
 namespace adit {
 namespace {
 
-constexpr double step_s = 1.0 / 240;
+constexpr double step_s = 1.0 / 60;
 
 struct Walk {
   std::vector<double> moving_mps, stops_s, gaps_m;
