@@ -261,7 +261,7 @@ SparseRows linearise(Problem& problem) {
 
   SparseRows rows;
   rows.unknowns = column;
-  rows.offset.resize(beams.size() + 1);
+  rows.offset.assign(beams.size() + 1, 0);
   for (size_t n = 0; n <= beams.size(); ++n) rows.offset[n] = static_cast<int>(n) * beam_entries;
   rows.column.resize(beams.size() * beam_entries);
   rows.value.resize(beams.size() * beam_entries);
