@@ -97,6 +97,7 @@ Estimate Stages::map(const MapSettings& settings, const Log& log) {
   timed("map", [&] {
     estimate = make_map(log, settings, console_.progress());
     save_estimate(out_ + "/map", estimate);
+    estimate = load_estimate(out_ + "/map");  // judged as its files tell it, so that they can be judged again
     forget({"score.json", "report"});
   });
   for (const std::string& n : estimate.notes) console_.note("  " + n);
