@@ -7,7 +7,8 @@
 
 namespace adit {
 
-/// Text of a data file that is part of the program, by its path in the source tree ("sim/vehicles/cart.toml"); "" if none.
+/// Text of a data file that is part of the program, by its path in the source tree ("sim/vehicles/cart.toml"); "" if
+/// none.
 std::string_view bundled(const std::string& path);
 /// Names (no folder, no ending) of the bundled files of a folder, sorted.
 std::vector<std::string> bundled_names(const std::string& folder);

@@ -2,16 +2,16 @@
 #include "base/config.h"
 
 #define TOML_ENABLE_FORMATTERS 0
+#include "base/bundled.h"
+#include "base/error.h"
+#include "base/files.h"
+
 #include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-
-#include "base/bundled.h"
-#include "base/error.h"
-#include "base/files.h"
 
 namespace adit {
 namespace {
@@ -217,7 +217,9 @@ Document Document::parse(const std::string& name, const std::string& text) {
   }
 }
 
-Document Document::load(const std::string& file) { return parse(file, read_text(file)); }
+Document Document::load(const std::string& file) {
+  return parse(file, read_text(file));
+}
 
 Document Document::find(const std::string& folder, const std::string& name) {
   if (name.find('/') != std::string::npos || name.ends_with(".toml")) return load(name);
@@ -231,7 +233,9 @@ Document Document::find(const std::string& folder, const std::string& name) {
               "; a file's name must end in .toml");
 }
 
-const std::string& Document::name() const { return impl_->name; }
+const std::string& Document::name() const {
+  return impl_->name;
+}
 
 void Document::read(const Fields& fields, const std::vector<std::string>& elsewhere) const {
   impl_->read(*impl_->table, "", fields, elsewhere);
@@ -251,7 +255,9 @@ std::vector<Document> Document::tables(const std::string& key) const {
   return found;
 }
 
-bool Document::has(const std::string& key) const { return static_cast<bool>(impl_->table->at_path(key)); }
+bool Document::has(const std::string& key) const {
+  return static_cast<bool>(impl_->table->at_path(key));
+}
 
 void Document::fail(const std::string& key, const std::string& what) const {
   const toml::node* node = impl_->table->at_path(key).node();
@@ -267,7 +273,8 @@ void set_field(const Fields& fields, const std::string& assignment) {
   if (field == fields.end()) throw Error("--set " + assignment + ": " + unknown_key(key, fields));
   toml::table parsed;
   try {
-    const bool bare = std::holds_alternative<std::string*>(field->value) && !value.starts_with('"') && !value.starts_with('\'');
+    const bool bare =
+        std::holds_alternative<std::string*>(field->value) && !value.starts_with('"') && !value.starts_with('\'');
     parsed = toml::parse("v = " + (bare ? in_quotes(value) : value));
   } catch (const toml::parse_error& e) {
     throw Error("--set " + assignment + ": the value is not TOML: " + std::string(e.description()));

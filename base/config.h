@@ -19,7 +19,8 @@
 
 namespace adit {
 
-using FieldRef = std::variant<bool*, int*, double*, std::string*, std::vector<double>*, std::vector<std::string>*, std::vector<int>*>;
+using FieldRef = std::variant<bool*, int*, double*, std::string*, std::vector<double>*, std::vector<std::string>*,
+                              std::vector<int>*>;
 
 /// One setting: its key, where it is kept, what it means, what is allowed.
 struct Field {
@@ -30,8 +31,9 @@ struct Field {
   std::string key;  // dotted below a table: "world.width_m"
   FieldRef value;
   std::string help;
-  double min = -std::numeric_limits<double>::infinity(), max = std::numeric_limits<double>::infinity();  // numbers, inclusive
-  std::vector<std::string> choices;  // strings; empty = any
+  double min = -std::numeric_limits<double>::infinity(),
+         max = std::numeric_limits<double>::infinity();  // numbers, inclusive
+  std::vector<std::string> choices;                      // strings; empty = any
 };
 using Fields = std::vector<Field>;
 
@@ -44,8 +46,8 @@ class Document {
   /// A file, or bundled text with the name that errors shall give.
   static Document parse(const std::string& name, const std::string& text);
   static Document load(const std::string& file);
-  /// `name` with a '/' or ending in .toml is a file; else the bundled FOLDER/name.toml. An unknown name is an Error that
-  /// lists those there are.
+  /// `name` with a '/' or ending in .toml is a file; else the bundled FOLDER/name.toml. An unknown name is an Error
+  /// that lists those there are.
   static Document find(const std::string& folder, const std::string& name);
 
   const std::string& name() const;

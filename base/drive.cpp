@@ -5,10 +5,14 @@ namespace adit {
 
 std::string drive_end_name(DriveEnd end) {
   switch (end) {
-    case DriveEnd::finished: return "finished";
-    case DriveEnd::stuck: return "stuck";
-    case DriveEnd::tipped: return "tipped";
-    case DriveEnd::fell: return "fell";
+    case DriveEnd::finished:
+      return "finished";
+    case DriveEnd::stuck:
+      return "stuck";
+    case DriveEnd::tipped:
+      return "tipped";
+    case DriveEnd::fell:
+      return "fell";
   }
   return "unknown";
 }

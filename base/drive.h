@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-
 #include "base/route.h"
 #include "base/trajectory.h"
+
+#include <string>
 
 namespace adit {
 
@@ -15,10 +15,10 @@ std::string drive_end_name(DriveEnd end);
 /// What a vehicle truly did.
 struct Drive {
   Route route;
-  Trajectory path;        // X_WB, dense enough to interpolate for the instant of each beam (120 Hz or more)
+  Trajectory path;  // X_WB, dense enough to interpolate for the instant of each beam (120 Hz or more)
   DriveEnd end = DriveEnd::finished;
-  std::string cause;      // one sentence, with place and time; empty when finished
-  double driven_m = 0;    // of route.length_m
+  std::string cause;    // one sentence, with place and time; empty when finished
+  double driven_m = 0;  // of route.length_m
 };
 
 }  // namespace adit

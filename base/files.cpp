@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/files.h"
 
+#include "base/error.h"
+
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,8 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-
-#include "base/error.h"
 
 namespace adit {
 namespace fs = std::filesystem;
@@ -21,7 +21,8 @@ void write_whole(const std::string& file, const std::function<void(const std::st
   fs::create_directories(folder, failed);
   if (failed) throw Error(folder.string() + ": cannot make this folder: " + failed.message(), Fault::file);
   const std::string temporary =
-      (folder / ("." + path.filename().string() + "." + std::to_string(::getpid()) + path.extension().string())).string();
+      (folder / ("." + path.filename().string() + "." + std::to_string(::getpid()) + path.extension().string()))
+          .string();
   try {
     write(temporary);
   } catch (...) {

@@ -34,7 +34,8 @@ Eigen::Matrix3d rotation_of(double yaw_rad, double pitch_rad, double roll_rad) {
 }
 
 YawPitchRoll yaw_pitch_roll(const Eigen::Matrix3d& R) {
-  return {std::atan2(R(1, 0), R(0, 0)), std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0))), std::atan2(R(2, 1), R(2, 2))};
+  return {std::atan2(R(1, 0), R(0, 0)), std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0))),
+          std::atan2(R(2, 1), R(2, 2))};
 }
 
 Pose pose_of(const Vec3& position, double yaw_rad, double pitch_rad, double roll_rad) {
@@ -44,7 +45,9 @@ Pose pose_of(const Vec3& position, double yaw_rad, double pitch_rad, double roll
   return X;
 }
 
-Pose lift(const Pose2& X, double z_m) { return pose_of({X.x_m, X.y_m, z_m}, X.yaw_rad); }
+Pose lift(const Pose2& X, double z_m) {
+  return pose_of({X.x_m, X.y_m, z_m}, X.yaw_rad);
+}
 
 Pose2 flatten(const Pose& X) {
   return {X.translation().x(), X.translation().y(), std::atan2(X.linear()(1, 0), X.linear()(0, 0))};

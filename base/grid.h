@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/frames.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "base/frames.h"
-
 namespace adit {
 
-/// What is known of the cells of a plane. Row 0 is the lowest y; cell (i, j) covers origin + [i, i+1) x [j, j+1) * cell_m.
+/// What is known of the cells of a plane. Row 0 is the lowest y; cell (i, j) covers origin + [i, i+1) x [j, j+1) *
+/// cell_m.
 struct Grid {
   enum Cell : std::uint8_t { unknown, free, occupied };
   double cell_m = 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "base/frames.h"
 #include "base/mesh.h"
+
+#include <string>
+#include <vector>
 
 namespace adit {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/laser.h"
 
+#include "base/config.h"
+#include "base/error.h"
+
 #include <cmath>
 #include <numbers>
 #include <vector>
-
-#include "base/config.h"
-#include "base/error.h"
 
 namespace adit {
 

@@ -11,16 +11,17 @@ class Document;
 struct LaserModel {
   std::string name;
   double fov_rad = 0;
-  int beams = 0;                  // equally spaced over fov_rad, both ends included, counter-clockwise about S's z
-  double turn_s = 0;                // one turn of the mirror
-  int interlace = 1;              // turns per scan: beam k is fired in turn k % interlace
-  double interval_s = 0;          // from the start of one recorded scan to the next, by the link's rate
-  double range_max_m = 0;         // of the mode
-  double resolution_m = 0;        // of the reported range
-  double sigma_m = 0;             // stated noise, 1 sd
-  double bias_m = 0;              // stated systematic error, half the width of its band
+  int beams = 0;            // equally spaced over fov_rad, both ends included, counter-clockwise about S's z
+  double turn_s = 0;        // one turn of the mirror
+  int interlace = 1;        // turns per scan: beam k is fired in turn k % interlace
+  double interval_s = 0;    // from the start of one recorded scan to the next, by the link's rate
+  double range_max_m = 0;   // of the mode
+  double resolution_m = 0;  // of the reported range
+  double sigma_m = 0;       // stated noise, 1 sd
+  double bias_m = 0;        // stated systematic error, half the width of its band
   double spot_m = 0, divergence_rad = 0;  // beam diameter = spot + divergence * range
-  double reflectivity_at_4m = 0;  // least diffuse reflectivity seen up to 4 m, growing as range^reflectivity_exponent beyond
+  double reflectivity_at_4m =
+      0;  // least diffuse reflectivity seen up to 4 m, growing as range^reflectivity_exponent beyond
   double reflectivity_exponent = 0;
 
   /// Direction of beam k in the scan plane, 0 = S's x axis.
@@ -29,8 +30,8 @@ struct LaserModel {
   double beam_offset_s(int k) const;
 };
 
-/// A bundled laser by name, or one from a TOML file; baud > 0 sets interval_s by the serial link (SICK telegram listing,
-/// table of skipped scans). Errors name file and key; a rate that the link cannot carry is an error.
+/// A bundled laser by name, or one from a TOML file; baud > 0 sets interval_s by the serial link (SICK telegram
+/// listing, table of skipped scans). Errors name file and key; a rate that the link cannot carry is an error.
 LaserModel load_laser(const std::string& name_or_file, int baud);
 
 }  // namespace adit

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/frames.h"
+
 #include <array>
 #include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
-
-#include "base/frames.h"
 
 namespace adit {
 
@@ -16,14 +16,14 @@ enum class Label : std::uint8_t { none = 0, floor = 1, roof = 2, rib = 3, cap = 
 const std::map<std::string, int>& label_ids();
 std::string label_name(Label label);
 
-/// An indexed triangle mesh in metres. Faces are counter-clockwise seen from outside of the enclosed volume: the enclosed
-/// volume of a mine is its void, so normals point into the rock.
+/// An indexed triangle mesh in metres. Faces are counter-clockwise seen from outside of the enclosed volume: the
+/// enclosed volume of a mine is its void, so normals point into the rock.
 struct Mesh {
-  std::vector<Vec3> vertex;                       // (n x 3)
+  std::vector<Vec3> vertex;                        // (n x 3)
   std::vector<std::array<std::uint32_t, 3>> face;  // (m x 3)
-  std::vector<Label> label;                       // (m) or empty
-  std::vector<int> part;                          // (m) or empty: id of the passage (floor, roof) or pillar (rib); -1 none
-  std::vector<float> reflectivity;                // (m) or empty: diffuse, at 905 nm, 0..1
+  std::vector<Label> label;                        // (m) or empty
+  std::vector<int> part;            // (m) or empty: id of the passage (floor, roof) or pillar (rib); -1 none
+  std::vector<float> reflectivity;  // (m) or empty: diffuse, at 905 nm, 0..1
 
   Vec3 corner(size_t f, int k) const { return vertex[face[f][k]]; }
   /// Unit normal, out of the enclosed volume.
@@ -37,9 +37,11 @@ double enclosed_volume(const Mesh& mesh);
 /// Number of edges that do not join exactly two faces in opposite directions; 0 for a closed, oriented mesh.
 size_t open_edges(const Mesh& mesh);
 
-/// Binary little-endian PLY: double x y z; faces vertex_indices, and as present int label, int part, float reflectivity.
+/// Binary little-endian PLY: double x y z; faces vertex_indices, and as present int label, int part, float
+/// reflectivity.
 void write_mesh(const std::string& file, const Mesh& mesh);
-/// Any PLY mesh, ascii or binary, float or double, triangles (polygons are fanned); label, part, reflectivity if present.
+/// Any PLY mesh, ascii or binary, float or double, triangles (polygons are fanned); label, part, reflectivity if
+/// present.
 Mesh read_mesh(const std::string& file);
 /// Binary glTF, one primitive and material per label, y up as the format demands.
 void write_glb(const std::string& file, const Mesh& mesh);

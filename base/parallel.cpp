@@ -54,8 +54,12 @@ void set_threads(int threads) {
   most_working = 0;
 }
 
-int threads() { return crew().size; }
-int threads_seen() { return most_working; }
+int threads() {
+  return crew().size;
+}
+int threads_seen() {
+  return most_working;
+}
 
 void parallel_chunks(size_t n, size_t grain, const std::function<void(size_t, size_t)>& f) {
   if (n == 0) return;

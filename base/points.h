@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/frames.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include "base/frames.h"
 
 namespace adit {
 
 /// Measured points in one frame, each with the instant and the laser that measured it. Optional columns may be empty.
 struct PointCloud {
-  std::vector<Vec3> p;                // (n x 3) metres
-  std::vector<double> stamp_s;        // (n) or empty: when the beam left; with the path this gives p in B
-  std::vector<std::uint8_t> laser;    // (n) or empty: index in the rig
+  std::vector<Vec3> p;              // (n x 3) metres
+  std::vector<double> stamp_s;      // (n) or empty: when the beam left; with the path this gives p in B
+  std::vector<std::uint8_t> laser;  // (n) or empty: index in the rig
 
   size_t size() const { return p.size(); }
 };

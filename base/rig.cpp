@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/rig.h"
 
-#include <cmath>
-#include <numbers>
-
 #include "base/config.h"
 #include "base/error.h"
+
+#include <cmath>
+#include <numbers>
 
 namespace adit {
 

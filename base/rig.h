@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "base/frames.h"
 #include "base/laser.h"
+
+#include <string>
+#include <vector>
 
 namespace adit {
 
 /// One laser on a vehicle.
 struct Mount {
-  std::string name;    // unique in the rig
+  std::string name;  // unique in the rig
   LaserModel laser;
   Pose X_BS = Pose::Identity();
   double phase_s = 0;  // of its first scan after the recording's start: lasers are not synchronised
@@ -29,7 +29,8 @@ View view_of(const Mount& mount);
 /// Index of the first mount with that view, or -1.
 int find_view(const Rig& rig, View view);
 
-/// A bundled rig by name, or one from a TOML file: tables [[laser]] with name, model, position_m, yaw_deg, pitch_deg, roll_deg.
+/// A bundled rig by name, or one from a TOML file: tables [[laser]] with name, model, position_m, yaw_deg, pitch_deg,
+/// roll_deg.
 Rig load_rig(const std::string& name_or_file, int baud);
 
 }  // namespace adit

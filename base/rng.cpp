@@ -32,7 +32,9 @@ Block block_at(std::uint64_t seed, Draw draw, std::uint64_t i, std::uint64_t j) 
                 key[0], key[1]);
 }
 
-double to_unit(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
+double to_unit(std::uint64_t bits) {
+  return static_cast<double>(bits >> 11) * 0x1p-53;
+}
 
 }  // namespace
 
@@ -41,7 +43,9 @@ std::uint64_t random_bits(std::uint64_t seed, Draw draw, std::uint64_t i, std::u
   return (std::uint64_t{b[0]} << 32) | b[1];
 }
 
-double uniform(std::uint64_t seed, Draw draw, std::uint64_t i, std::uint64_t j) { return to_unit(random_bits(seed, draw, i, j)); }
+double uniform(std::uint64_t seed, Draw draw, std::uint64_t i, std::uint64_t j) {
+  return to_unit(random_bits(seed, draw, i, j));
+}
 
 double normal(std::uint64_t seed, Draw draw, std::uint64_t i, std::uint64_t j) {
   const Block b = block_at(seed, draw, i, j);

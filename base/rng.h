@@ -7,9 +7,30 @@ namespace adit {
 
 /// What a random number is for; part of its address. Append only: the order is part of every seed's meaning.
 enum class Draw : std::uint32_t {
-  test, world_layout, world_wander, world_width, world_roll, world_roughness, world_height, world_material,
-  push_speed, push_stop, push_wobble, push_gait, route, mount_error, laser_phase, laser_jitter, laser_device,
-  beam_range, beam_angle, beam_drop, beam_detect, match_sample, eval_sample, bootstrap,
+  test,
+  world_layout,
+  world_wander,
+  world_width,
+  world_roll,
+  world_roughness,
+  world_height,
+  world_material,
+  push_speed,
+  push_stop,
+  push_wobble,
+  push_gait,
+  route,
+  mount_error,
+  laser_phase,
+  laser_jitter,
+  laser_device,
+  beam_range,
+  beam_angle,
+  beam_drop,
+  beam_detect,
+  match_sample,
+  eval_sample,
+  bootstrap,
 };
 
 /// Random numbers have addresses, not an order: the same (seed, draw, i, j) always gives the same number.

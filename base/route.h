@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <vector>
-
 #include "base/frames.h"
+
+#include <vector>
 
 namespace adit {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/trajectory.h"
 
+#include "base/error.h"
+#include "base/files.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
-
-#include "base/error.h"
-#include "base/files.h"
 
 namespace adit {
 
@@ -71,8 +71,8 @@ void write_tum(const std::string& file, const Trajectory& path) {
     Eigen::Quaterniond q(path.X_WB[i].linear());
     if (q.w() < 0) q.coeffs() *= -1;
     const Vec3& p = path.X_WB[i].translation();
-    const int n = std::snprintf(line, sizeof line, "%.9f %.9f %.9f %.9f %.12f %.12f %.12f %.12f\n", path.stamp_s[i], p.x(), p.y(),
-                                p.z(), q.x(), q.y(), q.z(), q.w());
+    const int n = std::snprintf(line, sizeof line, "%.9f %.9f %.9f %.9f %.12f %.12f %.12f %.12f\n", path.stamp_s[i],
+                                p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
     text.append(line, static_cast<size_t>(n));
   }
   write_text(file, text);

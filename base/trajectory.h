@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/frames.h"
+
 #include <string>
 #include <vector>
-
-#include "base/frames.h"
 
 namespace adit {
 
@@ -16,7 +16,8 @@ struct Trajectory {
   size_t size() const { return stamp_s.size(); }
   bool empty() const { return stamp_s.empty(); }
   bool covers(double t_s) const { return !empty() && t_s >= stamp_s.front() && t_s <= stamp_s.back(); }
-  /// Pose at any time: position linear, rotation slerp between the neighbours; the end poses outside of the covered span.
+  /// Pose at any time: position linear, rotation slerp between the neighbours; the end poses outside of the covered
+  /// span.
   Pose at(double t_s) const;
   /// Path length over all poses, metres, in space.
   double length_m() const;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "base/frames.h"
 #include "base/mesh.h"
+
+#include <string>
+#include <vector>
 
 namespace adit {
 
 /// Where passages meet or end. Its id is its index in World::junctions.
 struct Junction {
-  Vec3 p_W;             // on the floor
+  Vec3 p_W;                   // on the floor
   std::vector<int> passages;  // ids of those that meet here; one = a dead end
 
   int degree() const { return static_cast<int>(passages.size()); }

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
 
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <nlohmann/json.hpp>
-
 #include "base/bundled.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "cli/scenario.h"
 #include "cli/stages.h"
 #include "eval/render.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
 
 namespace adit {
 namespace {
@@ -25,13 +26,16 @@ Scenario scenario_of(const std::string& name, const Common& common) {
   return s;
 }
 
-std::string out_of(const Common& common, const std::string& name) { return common.out.empty() ? "out/" + name : common.out; }
+std::string out_of(const Common& common, const std::string& name) {
+  return common.out.empty() ? "out/" + name : common.out;
+}
 
 // The numbers that a person looks at first.
 void print_scores(const Score& score, Console& console) {
-  for (const char* name : {"trajectory.se3.ate_xy_rmse_m", "trajectory.se3.ate_z_rmse_m", "trajectory.open_loop.se3.ate_xy_rmse_m",
-                           "closures.loops_closed", "closures.loops_true", "closures.wrong", "map.se3.mae_m", "map.local_5m.mae_m",
-                           "grid.iou_free", "volume.observable_m3", "volume.mapped_m3", "volume.error_percent"}) {
+  for (const char* name :
+       {"trajectory.se3.ate_xy_rmse_m", "trajectory.se3.ate_z_rmse_m", "trajectory.open_loop.se3.ate_xy_rmse_m",
+        "closures.loops_closed", "closures.loops_true", "closures.wrong", "map.se3.mae_m", "map.local_5m.mae_m",
+        "grid.iou_free", "volume.observable_m3", "volume.mapped_m3", "volume.error_percent"}) {
     const Metric* m = score.find(name);
     if (!m) continue;
     char line[160];
@@ -43,7 +47,9 @@ void print_scores(const Score& score, Console& console) {
   }
 }
 
-ordered_json json_of_file(const std::string& file) { return ordered_json::parse(read_text(file)); }
+ordered_json json_of_file(const std::string& file) {
+  return ordered_json::parse(read_text(file));
+}
 
 // The scenario that a run folder was made from; the defaults where the folder has none.
 Scenario scenario_in(const std::string& out, const Common& common) {
@@ -101,13 +107,16 @@ int run_command(const std::string& scenario, const Common& common, Console& cons
 }
 
 int world_command(const std::string& scenario, const Common& common, Console& console) {
-  if (scenario.empty()) throw Error("world: name a scenario, or a mesh with --check; 'adit list scenarios' shows what is bundled");
+  if (scenario.empty())
+    throw Error("world: name a scenario, or a mesh with --check; 'adit list scenarios' shows what is bundled");
   const Scenario s = scenario_of(scenario, common);
   Stages stages(out_of(common, s.name), console);
   const World world = stages.world(s);
   stages.save_timing();
   console.result("mine: " + stages.out() + "/world");
-  if (console.wants_json()) console.json(ordered_json{{"out", stages.out()}, {"truth", json_of_file(stages.out() + "/world/truth.json")}}.dump());
+  if (console.wants_json())
+    console.json(
+        ordered_json{{"out", stages.out()}, {"truth", json_of_file(stages.out() + "/world/truth.json")}}.dump());
   return 0;
 }
 
@@ -139,7 +148,9 @@ int drive_command(const std::string& scenario, const std::string& world_dir, con
   console.result("recording: " + stages.out() + "/recording");
   if (console.wants_json()) {
     const Drive& d = driven.recording.truth.drive;
-    console.json(ordered_json{{"out", stages.out()}, {"end", drive_end_name(d.end)}, {"cause", d.cause}, {"driven_m", d.driven_m}}.dump());
+    console.json(ordered_json{
+        {"out", stages.out()}, {"end", drive_end_name(d.end)}, {"cause", d.cause}, {"driven_m", d.driven_m}}
+                     .dump());
   }
   return driven.exit_code;
 }
@@ -152,12 +163,13 @@ int map_command(const std::string& recording, const Common& common, Console& con
   stages.map(s.map, log);
   stages.save_timing();
   console.result("map: " + stages.out() + "/map");
-  if (console.wants_json()) console.json(ordered_json{{"out", stages.out()}, {"map", json_of_file(stages.out() + "/map/map.json")}}.dump());
+  if (console.wants_json())
+    console.json(ordered_json{{"out", stages.out()}, {"map", json_of_file(stages.out() + "/map/map.json")}}.dump());
   return 0;
 }
 
-int score_command(const std::string& world_dir, const std::string& truth_file, const std::string& map_dir, const Common& common,
-                  Console& console) {
+int score_command(const std::string& world_dir, const std::string& truth_file, const std::string& map_dir,
+                  const Common& common, Console& console) {
   Scenario s;
   for (const std::string& a : common.assignments) set_field(fields(s), a);
   const World world = load_world(world_dir);
@@ -169,7 +181,8 @@ int score_command(const std::string& world_dir, const std::string& truth_file, c
   const Rig nominal = fs::exists(log) ? load_log(log.string()).rig : truth.rig;
   const Estimate estimate = load_estimate(map_dir);
   const Score score = score_map(world, truth, nominal, estimate, s.score, console.progress());
-  const std::string file = common.out.empty() ? (fs::path(map_dir).parent_path() / "score.json").string() : common.out + "/score.json";
+  const std::string file =
+      common.out.empty() ? (fs::path(map_dir).parent_path() / "score.json").string() : common.out + "/score.json";
   write_score(file, score);
   print_scores(score, console);
   console.result("scores: " + file);
@@ -183,7 +196,8 @@ int report_command(const std::vector<std::string>& outs, const Common& common, C
     const RunFolder run = load_run(out, common);
     const std::string dir = out + "/report";
     write_report(dir,
-                 {run.world, run.recording.log, run.recording.truth, run.estimate, run.score, resolved_toml(run.scenario), run.scenario.name},
+                 {run.world, run.recording.log, run.recording.truth, run.estimate, run.score,
+                  resolved_toml(run.scenario), run.scenario.name},
                  run.scenario.report, console.progress());
     console.result("report: " + dir + "/index.html");
     pages.push_back(dir + "/index.html");
@@ -195,9 +209,10 @@ int report_command(const std::vector<std::string>& outs, const Common& common, C
 int render_command(const std::string& out, const std::string& view, const Common& common, Console& console) {
   const RunFolder run = load_run(out, {"", -1, common.assignments});
   const std::string file = common.out.empty() ? view + ".png" : common.out;
-  const Picture picture = render_view(
-      view, {run.world, run.recording.log, run.recording.truth, run.estimate, run.score, resolved_toml(run.scenario), run.scenario.name},
-      run.scenario.report);
+  const Picture picture = render_view(view,
+                                      {run.world, run.recording.log, run.recording.truth, run.estimate, run.score,
+                                       resolved_toml(run.scenario), run.scenario.name},
+                                      run.scenario.report);
   write_png(file, picture);
   console.result("picture: " + file);
   console.json(ordered_json{{"picture", file}}.dump());
@@ -205,8 +220,10 @@ int render_command(const std::string& out, const std::string& view, const Common
 }
 
 int list_command(const std::string& what, Console& console) {
-  const std::vector<std::pair<std::string, std::string>> folders{
-      {"scenarios", "cli/scenarios"}, {"vehicles", "sim/vehicles"}, {"rigs", "sensors/rigs"}, {"lasers", "sensors/lasers"}};
+  const std::vector<std::pair<std::string, std::string>> folders{{"scenarios", "cli/scenarios"},
+                                                                 {"vehicles", "sim/vehicles"},
+                                                                 {"rigs", "sensors/rigs"},
+                                                                 {"lasers", "sensors/lasers"}};
   ordered_json all = ordered_json::object();
   for (const auto& [kind, folder] : folders)
     if (what.empty() || what == kind) all[kind] = bundled_names(folder);
@@ -216,7 +233,8 @@ int list_command(const std::string& what, Console& console) {
     console.result(kind);
     for (const auto& name : names) {
       std::string line = "  " + name.get<std::string>();
-      if (kind == "scenarios") line += std::string(std::max<size_t>(1, 20 - line.size()), ' ') + load_scenario(name).about;
+      if (kind == "scenarios")
+        line += std::string(std::max<size_t>(1, 20 - line.size()), ' ') + load_scenario(name).about;
       console.result(line);
     }
   }

@@ -16,9 +16,12 @@ double now_s() {
 
 std::string short_number(double v) {
   char text[32];
-  if (v >= 1e6) std::snprintf(text, sizeof text, "%.1f M", v / 1e6);
-  else if (v >= 1e4) std::snprintf(text, sizeof text, "%.0f k", v / 1e3);
-  else std::snprintf(text, sizeof text, v < 10 && v != std::floor(v) ? "%.2g" : "%.0f", v);
+  if (v >= 1e6)
+    std::snprintf(text, sizeof text, "%.1f M", v / 1e6);
+  else if (v >= 1e4)
+    std::snprintf(text, sizeof text, "%.0f k", v / 1e3);
+  else
+    std::snprintf(text, sizeof text, v < 10 && v != std::floor(v) ? "%.2g" : "%.0f", v);
   return text;
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-
 #include "base/progress.h"
+
+#include <string>
 
 namespace adit {
 
-/// Where a command's words go: results to stdout, progress to stderr. With --json stdout holds one JSON object and nothing
-/// else; with --quiet stderr holds errors only.
+/// Where a command's words go: results to stdout, progress to stderr. With --json stdout holds one JSON object and
+/// nothing else; with --quiet stderr holds errors only.
 class Console {
  public:
   Console(bool quiet, bool json);

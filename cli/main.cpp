@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
+#include "base/parallel.h"
+#include "cli/commands.h"
+
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
@@ -6,10 +10,6 @@
 #include <new>
 #include <string>
 #include <vector>
-
-#include "base/error.h"
-#include "base/parallel.h"
-#include "cli/commands.h"
 
 namespace {
 
@@ -53,7 +53,8 @@ void add_commands(CLI::App& app, Words& w) {
   add_common(run, w, true);
   CLI::App* world = app.add_subcommand("world", "a mine alone, or the check of a mesh");
   CLI::Option* scenario = world->add_option("scenario", w.first, "bundled name or TOML file");
-  CLI::Option* check = world->add_option("--check", w.check, "verify this PLY mesh: closed, oriented, labelled, not self-crossing");
+  CLI::Option* check =
+      world->add_option("--check", w.check, "verify this PLY mesh: closed, oriented, labelled, not self-crossing");
   check->excludes(scenario);
   add_common(world, w, true);
   CLI::App* drive = app.add_subcommand("drive", "a recording, in a mine that is made or given");

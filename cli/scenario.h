@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "base/config.h"
 #include "eval/report.h"
 #include "eval/score.h"
@@ -12,6 +8,10 @@
 #include "sensors/sensors.h"
 #include "sim/sim.h"
 #include "worlds/worlds.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace adit {
 
@@ -30,8 +30,8 @@ struct Scenario {
 };
 Fields fields(Scenario& s);
 
-/// A bundled scenario by name or a file, then the command line's key=value assignments in order. `version` in a resolved
-/// scenario is checked to be text and otherwise ignored.
+/// A bundled scenario by name or a file, then the command line's key=value assignments in order. `version` in a
+/// resolved scenario is checked to be text and otherwise ignored.
 Scenario load_scenario(const std::string& name_or_file, const std::vector<std::string>& assignments = {});
 /// The scenario with every value written, as OUT/scenario.toml holds it.
 std::string resolved_toml(const Scenario& s);

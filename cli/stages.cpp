@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/stages.h"
 
+#include "base/error.h"
+#include "base/files.h"
+
+#include <nlohmann/json.hpp>
+
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
-
-#include "base/error.h"
-#include "base/files.h"
 
 namespace adit {
 namespace {
@@ -16,7 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // Linux keeps the peak of the resident memory and starts it anew on request (proc(5), clear_refs).
-void restart_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
+void restart_peak() {
+  std::ofstream("/proc/self/clear_refs") << "5";
+}
 
 double peak_gib() {
   std::ifstream status("/proc/self/status");
@@ -48,7 +51,8 @@ void Stages::forget(const std::vector<std::string>& later) const {
   for (const std::string& part : later) {
     std::error_code failed;
     fs::remove_all(fs::path(out_) / part, failed);
-    if (failed) throw Error(out_ + "/" + part + ": cannot remove what an earlier run made: " + failed.message(), Fault::file);
+    if (failed)
+      throw Error(out_ + "/" + part + ": cannot remove what an earlier run made: " + failed.message(), Fault::file);
   }
 }
 
@@ -58,14 +62,17 @@ World Stages::world(const Scenario& s) {
     world = make_world(s.world, static_cast<std::uint64_t>(s.seed), console_.progress());
     world.name = s.name;
     const WorldCheck check = check_world(world);
-    if (!check.ok()) throw Error("the mine of seed " + std::to_string(s.seed) + " is broken: " + check.what(), Fault::bug);
-    plan_route(world, s.route, static_cast<std::uint64_t>(s.seed));  // a route that cannot be is said before files change
+    if (!check.ok())
+      throw Error("the mine of seed " + std::to_string(s.seed) + " is broken: " + check.what(), Fault::bug);
+    plan_route(world, s.route,
+               static_cast<std::uint64_t>(s.seed));  // a route that cannot be is said before files change
     write_text(out_ + "/scenario.toml", resolved_toml(s));
     save_world(out_ + "/world", world);
     forget({"recording", "map", "score.json", "report"});
   });
-  console_.note("  " + std::to_string(world.mesh.face.size()) + " triangles, " + std::to_string(world.pillars.size()) + " pillars, " +
-                std::to_string(world.numbers.loops) + " loops, void of " + with_unit(world.numbers.volume_m3, "m3", 1));
+  console_.note("  " + std::to_string(world.mesh.face.size()) + " triangles, " + std::to_string(world.pillars.size()) +
+                " pillars, " + std::to_string(world.numbers.loops) + " loops, void of " +
+                with_unit(world.numbers.volume_m3, "m3", 1));
   return world;
 }
 
@@ -115,10 +122,11 @@ Score Stages::score(const ScoreSettings& settings, const World& world, const Tru
   return score;
 }
 
-void Stages::report(const Scenario& s, const World& world, const Recording& recording, const Estimate& estimate, const Score& score) {
+void Stages::report(const Scenario& s, const World& world, const Recording& recording, const Estimate& estimate,
+                    const Score& score) {
   timed("report", [&] {
-    write_report(out_ + "/report", {world, recording.log, recording.truth, estimate, score, resolved_toml(s), s.name}, s.report,
-                 console_.progress());
+    write_report(out_ + "/report", {world, recording.log, recording.truth, estimate, score, resolved_toml(s), s.name},
+                 s.report, console_.progress());
   });
 }
 

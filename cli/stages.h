@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "base/estimate.h"
 #include "base/recording.h"
 #include "base/world.h"
@@ -12,10 +8,14 @@
 #include "cli/scenario.h"
 #include "eval/score.h"
 
+#include <functional>
+#include <string>
+#include <vector>
+
 namespace adit {
 
-/// The stages of a run in their order, each reading what the one before it made. A stage that succeeds puts its files in
-/// place and removes what later stages had made from older input, so that a folder never mixes two runs.
+/// The stages of a run in their order, each reading what the one before it made. A stage that succeeds puts its files
+/// in place and removes what later stages had made from older input, so that a folder never mixes two runs.
 class Stages {
  public:
   Stages(std::string out, Console& console);
@@ -27,8 +27,10 @@ class Stages {
   };
   Driven drive(const Scenario& s, const World& world);
   Estimate map(const MapSettings& settings, const Log& log);
-  Score score(const ScoreSettings& settings, const World& world, const Truth& truth, const Rig& nominal, const Estimate& estimate);
-  void report(const Scenario& s, const World& world, const Recording& recording, const Estimate& estimate, const Score& score);
+  Score score(const ScoreSettings& settings, const World& world, const Truth& truth, const Rig& nominal,
+              const Estimate& estimate);
+  void report(const Scenario& s, const World& world, const Recording& recording, const Estimate& estimate,
+              const Score& score);
 
   /// OUT/timing.json: seconds and peak memory of every stage that ran.
   void save_timing() const;

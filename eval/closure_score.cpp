@@ -110,6 +110,12 @@ class Rounds {
   std::vector<std::vector<double>> chain_;  // (samples x passages) from the start
 };
 
+// Does the map lay the two visits of a place as they truly lie to each other?
+bool laid_together(const PathMatch& match, size_t a, size_t b, double loop_m) {
+  const Pose truth = match.X_WB[a].inverse() * match.X_WB[b], map = match.X_MB[a].inverse() * match.X_MB[b];
+  return (truth.translation() - map.translation()).norm() <= loop_m;
+}
+
 struct Judged {
   std::int64_t accepted = 0, wrong = 0, ambiguous = 0, unmatched = 0;
   std::vector<std::pair<size_t, size_t>> right;  // matched poses, earlier and later
@@ -163,11 +169,15 @@ void add_closures(const MetricList& list, const PassageMap& passages, const Cast
     places += revisited[s];
     places_found += revisited[s] && found[s];
   }
-  Rank driven, closed;
+  Rank driven, closed, tied;
   if (!passages.empty() && !samples.empty()) {
     const Rounds rounds(passages, match, samples);
-    for (const Revisit& r : revisits) driven.add(rounds.cycle(r.earlier, r.later));
-    for (const auto& [a, b] : judged.right) closed.add(rounds.cycle(sample_at(a), sample_at(b)));
+    for (const Revisit& r : revisits) {
+      const std::vector<double> cycle = rounds.cycle(r.earlier, r.later);
+      driven.add(cycle);
+      if (laid_together(match, samples[r.earlier].match, samples[r.later].match, settings.loop_m)) closed.add(cycle);
+    }
+    for (const auto& [a, b] : judged.right) tied.add(rounds.cycle(sample_at(a), sample_at(b)));
   }
   const auto share = [](std::int64_t a, std::int64_t b) {
     return b ? static_cast<double>(a) / static_cast<double>(b) : NAN;
@@ -183,6 +193,7 @@ void add_closures(const MetricList& list, const PassageMap& passages, const Cast
            !why.empty() ? why : "the path revisits no place");
   list.count("loops_true", driven.value(), Better::higher, no_graph);
   list.count("loops_closed", closed.value(), Better::higher, no_graph);
+  list.count("loops_by_closure", tied.value(), Better::higher, no_graph);
 }
 
 }  // namespace adit

@@ -23,10 +23,11 @@ namespace adit {
 ///   along the
 /// path, lies within place_m in plain sight, parallel or opposite within place_deg; it is found if a right accepted
 /// closure ends within 5 m of it along the path;
-///   loops_true: independent cycles of the passages that the path really drove round (rank of the cycles, written as
-///   numbers of
-/// passages followed, of all pairs of samples that revisit a place in any heading); loops_closed: the same rank over
-/// the right accepted closures alone.
+///   loops_true: independent cycles of the passages that the path really drove round: each pair of samples that
+///   revisits a
+/// place, in any heading, makes a cycle, written as how often each passage is followed; the rank of all of them;
+///   loops_closed: the same rank over the pairs that the map lays within loop_m of their true relative position;
+///   loops_by_closure: the same rank over the right accepted closures.
 /// @param p_BL  the mapping laser's place in the body, from which plain sight is judged
 void add_closures(const MetricList& list, const PassageMap& passages, const Caster& caster, const PathMatch& match,
                   const std::vector<Closure>& closures, const Vec3& p_BL, const ScoreSettings& settings,

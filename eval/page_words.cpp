@@ -68,7 +68,7 @@ std::vector<KeyNumber> key_numbers(const ReportInput& in) {
   const Score& s = in.score;
   return {number_of(s, "path error, rms in plan", "trajectory.se3.ate_xy_rmse_m", "cm", 100, "poses"),
           number_of(s, "map to rock, mean distance", "map.se3.mae_m", "cm", 100, "points"),
-          number_of(s, "map and rock agree to 10 cm", "map.se3.f_10cm", "%", 100, "patches"),
+          number_of(s, "map and rock agree to 10 cm", "map.se3.f_10cm", "%", 100, "points"),
           volume_of(s),
           loops_of(s),
           worst_of(s)};

@@ -260,22 +260,24 @@ const Metric* Score::find(const std::string& name) const {
 
 Fields fields(ScoreSettings& s) {
   constexpr double most = 1e6;
-  return {{"max_gap_s", &s.max_gap_s, "widest gap between true poses that is interpolated", 0, most},
-          {"rpe_m", &s.rpe_m, "distances of the relative pose error"},
-          {"closure_m", &s.closure_m, "a measured closure is right within this distance", 0, most},
-          {"closure_deg", &s.closure_deg, "and this angle", 0, 180},
-          {"place_m", &s.place_m, "true poses within this are the same place", 0, most},
-          {"place_deg", &s.place_deg, "headings within this of each other or of opposite are along each other", 0, 90},
-          {"revisit_m", &s.revisit_m, "way between two visits of a place", 0, most},
-          {"thresholds_m", &s.thresholds_m, "of precision, recall and F"},
-          {"patch_m", &s.patch_m, "edge of the patches in which surface is counted", 0.01, 100},
-          {"incidence_deg", &s.incidence_deg, "beams that meet the surface flatter do not make it observable", 0, 90},
-          {"window_m", &s.window_m, "of local_5m: way whose points are laid together", 0.1, most},
-          {"domain_cell_m", &s.domain_cell_m, "columns of the volume's domain", 0.01, 10},
-          {"domain_rock_m", &s.domain_rock_m, "rock about the observable surface that belongs to it", 0, 100},
-          {"domain_step_m", &s.domain_step_m, "scans farther apart span no volume", 0, 100},
-          {"domain_beam_deg", &s.domain_beam_deg, "between the beams whose fans span it", 0.01, 45},
-          {"pillar_m2", &s.pillar_m2, "smaller islands in a grid are no pillars", 0, most}};
+  return {
+      {"max_gap_s", &s.max_gap_s, "widest gap between true poses that is interpolated", 0, most},
+      {"rpe_m", &s.rpe_m, "distances of the relative pose error"},
+      {"closure_m", &s.closure_m, "a measured closure is right within this distance", 0, most},
+      {"closure_deg", &s.closure_deg, "and this angle", 0, 180},
+      {"place_m", &s.place_m, "true poses within this are the same place", 0, most},
+      {"place_deg", &s.place_deg, "headings within this of each other or of opposite are along each other", 0, 90},
+      {"revisit_m", &s.revisit_m, "way between two visits of a place", 0, most},
+      {"loop_m", &s.loop_m, "a loop is closed when two visits of a place are laid within this of the truth", 0, most},
+      {"thresholds_m", &s.thresholds_m, "of precision, recall and F"},
+      {"patch_m", &s.patch_m, "edge of the patches in which surface is counted", 0.01, 100},
+      {"incidence_deg", &s.incidence_deg, "beams that meet the surface flatter do not make it observable", 0, 90},
+      {"window_m", &s.window_m, "of local_5m: way whose points are laid together", 0.1, most},
+      {"domain_cell_m", &s.domain_cell_m, "columns of the volume's domain", 0.01, 10},
+      {"domain_rock_m", &s.domain_rock_m, "rock about the observable surface that belongs to it", 0, 100},
+      {"domain_step_m", &s.domain_step_m, "scans farther apart span no volume", 0, 100},
+      {"domain_beam_deg", &s.domain_beam_deg, "between the beams whose fans span it", 0.01, 45},
+      {"pillar_m2", &s.pillar_m2, "smaller islands in a grid are no pillars", 0, most}};
 }
 
 Score score_map(const World& world, const Truth& truth, const Rig& nominal, const Estimate& estimate,

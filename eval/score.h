@@ -81,6 +81,7 @@ struct ScoreSettings {
   std::vector<double> rpe_m = {1, 5, 10, 25, 50, 100};
   double closure_m = 0.5, closure_deg = 3;                // a measured closure is right within these
   double place_m = 3, place_deg = 45, revisit_m = 20;     // the same place; path between two visits of it
+  double loop_m = 1;                                      // two visits laid together within this close a loop
   std::vector<double> thresholds_m = {0.05, 0.10, 0.20};  // of precision, recall and F
   double patch_m = 0.2;                                   // edge of the patches of surface that are counted
   double incidence_deg = 80;   // beams that meet the surface flatter do not make it observable

@@ -23,6 +23,10 @@ TrueScans::TrueScans(const Truth& truth) : truth_(&truth) {
   }
 }
 
+Pose TrueScans::X_WS(size_t laser, size_t scan) const {
+  return truth_->drive.path.at(truth_->scans[laser].stamp_s[scan]) * mount(laser).X_BS;
+}
+
 TrueBeam TrueScans::beam(size_t laser, size_t scan, int k) const {
   const Mount& m = mount(laser);
   const ScanTruth& s = truth_->scans[laser];

@@ -31,6 +31,8 @@ class TrueScans {
   size_t scans(size_t laser) const { return truth_->scans[laser].stamp_s.size(); }
   const Mount& mount(size_t laser) const { return truth_->rig.mounts[laser]; }
   const ScanTruth& truth(size_t laser) const { return truth_->scans[laser]; }
+  /// Pose of the laser when the scan begins.
+  Pose X_WS(size_t laser, size_t scan) const;
   TrueBeam beam(size_t laser, size_t scan, int k) const;
   /// Every step-th beam of a scan, the first one included.
   std::vector<TrueBeam> fan(size_t laser, size_t scan, int step) const;

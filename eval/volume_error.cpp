@@ -16,15 +16,20 @@ namespace adit {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr double jump_m = 0.5;      // ends of neighbouring beams farther apart lie on two surfaces
-constexpr double sliver_m3 = 1e-6;  // tetrahedra below it are left out
+constexpr double jump_m = 0.5;  // ends of neighbouring beams farther apart lie on two surfaces
+constexpr double key_m = 0.05, key_rad = 5 * std::numbers::pi / 180;  // scans that moved by less span nothing yet
 
-void add_tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, std::vector<Tetrahedron>& out) {
-  if (std::abs((b - a).cross(c - a).dot(d - a)) > 6 * sliver_m3) out.push_back({a, b, c, d});
+double volume(const Tetrahedron& t) {
+  return std::abs((t[1] - t[0]).cross(t[2] - t[0]).dot(t[3] - t[0])) / 6;
+}
+double area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (b - a).cross(c - a).norm() / 2;
 }
 
-// The prism between beams k and k + 1 of two scans: triangles (origin, end, end) joined.
-void add_prism(const std::array<TrueBeam, 4>& beam, std::vector<Tetrahedron>& out) {
+// The prism between beams k and k + 1 of two scans: triangles (origin, end, end) joined. One that is thinner than
+// thin_m, as between fans that move within their own plane, is left out: it holds next to nothing and covers many
+// columns.
+void add_prism(const std::array<TrueBeam, 4>& beam, double thin_m, std::vector<Tetrahedron>& out) {
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
   for (const TrueBeam& b : beam) {
     if (!b.met) return;
@@ -35,42 +40,69 @@ void add_prism(const std::array<TrueBeam, 4>& beam, std::vector<Tetrahedron>& ou
   const auto end = [&](const TrueBeam& b) { return b.origin + (jumps ? nearest : b.range_m) * b.direction; };
   const Vec3 &o = beam[0].origin, &p = beam[2].origin;
   const Vec3 a = end(beam[0]), b = end(beam[1]), c = end(beam[2]), d = end(beam[3]);
-  add_tetrahedron(o, a, b, d, out);
-  add_tetrahedron(o, a, d, c, out);
-  add_tetrahedron(o, c, d, p, out);
+  const std::array<Tetrahedron, 3> parts{{{o, a, b, d}, {o, a, d, c}, {o, c, d, p}}};
+  const double thickness_m =
+      (volume(parts[0]) + volume(parts[1]) + volume(parts[2])) / std::max(area(o, a, b), area(p, c, d));
+  if (thickness_m > thin_m) out.insert(out.end(), parts.begin(), parts.end());
 }
 
-std::vector<Tetrahedron> between(const std::vector<TrueBeam>& one, const std::vector<TrueBeam>& next, double step_m) {
+// A scan that has moved from the key scan before it enough to span something.
+struct KeyScan {
+  size_t scan;
+  bool joined;  // to the key scan before: no two scans in between lie more than step_m apart
+};
+
+std::vector<KeyScan> key_scans(const TrueScans& scans, size_t laser, double step_m) {
+  std::vector<KeyScan> keys;
+  Pose last, before;
+  bool joined = false;
+  for (size_t i = 0; i < scans.scans(laser); ++i) {
+    const Pose X = scans.X_WS(laser, i);
+    joined = joined && (X.translation() - before.translation()).norm() <= step_m;
+    before = X;
+    const bool still = !keys.empty() && (X.translation() - last.translation()).norm() < key_m &&
+                       Eigen::AngleAxisd(last.linear().transpose() * X.linear()).angle() < key_rad;
+    if (still) continue;
+    keys.push_back({i, joined});
+    last = X;
+    joined = true;
+  }
+  return keys;
+}
+
+std::vector<Tetrahedron> between(const std::vector<TrueBeam>& one, const std::vector<TrueBeam>& next, double thin_m) {
   std::vector<Tetrahedron> out;
-  if ((one[0].origin - next[0].origin).norm() > step_m) return out;
-  for (size_t k = 0; k + 1 < one.size(); ++k) add_prism({one[k], one[k + 1], next[k], next[k + 1]}, out);
+  for (size_t k = 0; k + 1 < one.size(); ++k) add_prism({one[k], one[k + 1], next[k], next[k + 1]}, thin_m, out);
   return out;
 }
 
 Dexels swept_by(const TrueScans& scans, const Dexels& like, const ScoreSettings& settings, const Progress& progress) {
   DexelUnion swept(like);
   constexpr size_t batch = 256;
-  double done = 0, total = 0;
-  for (size_t l = 0; l < scans.lasers(); ++l) total += static_cast<double>(scans.scans(l));
   for (size_t l = 0; l < scans.lasers(); ++l) {
     const LaserModel& laser = scans.mount(l).laser;
     const double spacing_rad = laser.fov_rad / (laser.beams - 1);
-    const int step =
-        std::max(1, static_cast<int>(std::lround(settings.domain_beam_deg * std::numbers::pi / 180 / spacing_rad)));
-    for (size_t begin = 0; begin + 1 < scans.scans(l); begin += batch) {
-      const size_t n = std::min(batch, scans.scans(l) - 1 - begin);
+    const double wanted_rad = settings.domain_beam_deg * std::numbers::pi / 180;
+    const int step = std::max(1, static_cast<int>(std::lround(wanted_rad / spacing_rad)));
+    const std::vector<KeyScan> keys = key_scans(scans, l, settings.domain_step_m);
+    for (size_t begin = 0; begin + 1 < keys.size(); begin += batch) {
+      const size_t n = std::min(batch, keys.size() - 1 - begin);
       std::vector<std::vector<TrueBeam>> fans(n + 1);
       std::vector<std::vector<Tetrahedron>> prisms(n);
       parallel_for(
-          n + 1, [&](size_t k) { fans[k] = scans.fan(l, begin + k, step); }, 8);
+          n + 1, [&](size_t k) { fans[k] = scans.fan(l, keys[begin + k].scan, step); }, 8);
       parallel_for(
-          n, [&](size_t k) { prisms[k] = between(fans[k], fans[k + 1], settings.domain_step_m); }, 8);
+          n,
+          [&](size_t k) {
+            if (keys[begin + k + 1].joined) prisms[k] = between(fans[k], fans[k + 1], settings.domain_cell_m / 4);
+          },
+          8);
       std::vector<Tetrahedron> all;
       for (const auto& some : prisms) all.insert(all.end(), some.begin(), some.end());
       swept.add(all);
-      progress("score: domain", done + static_cast<double>(begin + n), total);
+      const double share = static_cast<double>(begin + n) / static_cast<double>(keys.size() - 1);
+      progress("score: domain", static_cast<double>(l) + share, static_cast<double>(scans.lasers()));
     }
-    done += static_cast<double>(scans.scans(l));
   }
   return swept.solid();
 }

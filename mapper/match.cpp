@@ -71,7 +71,8 @@ Weakness weakness_of(const Linear& at) {
     if (!(H(2, 2) > 0)) return Eigen::Matrix2d::Zero();
     return H.topLeftCorner<2, 2>() - H.block<2, 1>(0, 2) * H.block<1, 2>(2, 0) / H(2, 2);
   };
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> honest(marginal(at.H - at.H_noise));
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> honest;
+  honest.computeDirect(marginal(at.H - at.H_noise));  // closed form
   out.direction = honest.eigenvectors().col(0);
   out.information = std::max(0.0, honest.eigenvalues()[0]);
   out.information_raw = std::max(out.information, out.direction.dot(marginal(at.H) * out.direction));
@@ -84,7 +85,9 @@ void hold_weak(Linear& at, const Weakness& weak) {
   const Vec3 v(weak.direction.x(), weak.direction.y(), 0);
   const Mat3 keep = Mat3::Identity() - v * v.transpose();
   const double share = weak.information_raw > 0 ? weak.information / weak.information_raw : 0;
-  at.H = keep * at.H * keep + weak.information * v * v.transpose();
+  const Mat3 kept = keep * at.H;
+  at.H = kept * keep;
+  at.H += weak.information * v * v.transpose();
   at.g = keep * at.g + share * v.dot(at.g) * v;
 }
 

@@ -236,6 +236,10 @@ Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const Odom
                          const Progress& progress) {
   const size_t n = scans.size();
   if (n == 0) throw Error("laser '" + horizontal.name + "': no scan; a map needs at least one");
+  for (size_t i = 1; i < n; ++i)
+    if (!(scans.stamp_s[i] > scans.stamp_s[i - 1]))
+      throw Error("laser '" + horizontal.name + "': scan " + std::to_string(i) + ": its stamp, " +
+                  std::to_string(scans.stamp_s[i]) + " s, is not after that of the scan before; stamps must grow");
   Odometry out;
   out.stamp_s = scans.stamp_s;
   out.X_MB.assign(n, Pose2{});

@@ -45,7 +45,8 @@ Fields fields(OdometrySettings& s);
 /// Motion of the body from one horizontal laser's scans alone: each scan is matched to a map of recent key scans from a
 /// prediction of constant speed, with a correlative search where that fails. Where the ribs leave a direction open the
 /// prediction is kept in it and the stretch is reported with the sigma to which it has grown.
-/// @param scans at least one; a scan without a single rib point moves as predicted and counts as lost
+/// @param scans at least one, stamps that grow, else Error; a scan without a single rib point moves as predicted and
+/// counts as lost
 Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings,
                          const Progress& progress = {});
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rays/caster.h"
 
+#include "base/error.h"
+
 #include <embree3/rtcore.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
-
-#include "base/error.h"
 
 namespace adit {
 namespace {
@@ -18,7 +18,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // One instruction set everywhere: other ones change the last bits of the ranges.
 RTCDevice make_device() {
   if (!__builtin_cpu_supports("avx2"))
-    throw Error("this processor has no AVX2, which adit needs so that ranges have the same bits everywhere", Fault::not_comparable);
+    throw Error("this processor has no AVX2, which adit needs so that ranges have the same bits everywhere",
+                Fault::not_comparable);
   RTCDevice device = rtcNewDevice("isa=avx2,threads=0,set_affinity=0");
   if (!device) throw Error("Embree cannot start: error " + std::to_string(rtcGetDeviceError(nullptr)), Fault::file);
   return device;
@@ -83,8 +84,8 @@ Caster::Caster(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
   RTCGeometry geometry = rtcNewGeometry(m.device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                3 * sizeof(float), mesh.vertex.size()));
-  auto* faces = static_cast<unsigned*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.face.size()));
+  auto* faces = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                               3 * sizeof(unsigned), mesh.face.size()));
   ADIT_CHECK(vertices && faces);
   for (size_t i = 0; i < mesh.vertex.size(); ++i)
     for (int k = 0; k < 3; ++k) vertices[3 * i + k] = static_cast<float>(mesh.vertex[i][k] - m.middle[k]);
@@ -99,7 +100,9 @@ Caster::~Caster() = default;
 Caster::Caster(Caster&&) noexcept = default;
 Caster& Caster::operator=(Caster&&) noexcept = default;
 
-const Mesh& Caster::mesh() const { return *impl_->mesh; }
+const Mesh& Caster::mesh() const {
+  return *impl_->mesh;
+}
 
 Hit Caster::nearest(const Ray& ray) const {
   Hit hit;

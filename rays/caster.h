@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/frames.h"
+#include "base/mesh.h"
+
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
-
-#include "base/frames.h"
-#include "base/mesh.h"
 
 namespace adit {
 
@@ -17,8 +17,8 @@ struct Ray {
 };
 
 struct Hit {
-  double range_m;           // +inf: nothing met
-  std::int32_t face = -1;   // of the mesh, -1: nothing met
+  double range_m;          // +inf: nothing met
+  std::int32_t face = -1;  // of the mesh, -1: nothing met
 };
 
 struct Closest {
@@ -27,8 +27,8 @@ struct Closest {
   double distance_m;
 };
 
-/// Asks a mesh what a ray meets first and what surface is nearest. Safe to ask from many threads; the same bits on any number
-/// of them. The sole owner of Embree, its instruction set pinned.
+/// Asks a mesh what a ray meets first and what surface is nearest. Safe to ask from many threads; the same bits on any
+/// number of them. The sole owner of Embree, its instruction set pinned.
 class Caster {
  public:
   /// The mesh must outlive the caster. Error for a mesh without faces, or a processor without AVX2.
@@ -40,10 +40,11 @@ class Caster {
   const Mesh& mesh() const;
   /// Exact: the face is found in floats, the range to its plane computed in doubles.
   Hit nearest(const Ray& ray) const;
-  /// hits[i] belongs to rays[i]. Fastest where neighbours in the span are neighbours in space (beams of one fan in order).
+  /// hits[i] belongs to rays[i]. Fastest where neighbours in the span are neighbours in space (beams of one fan in
+  /// order).
   void nearest(std::span<const Ray> rays, std::span<Hit> hits) const;
-  /// Nearest point of the surface within radius_m. With `seen_along` only faces that a beam in that direction can meet from
-  /// within the enclosed volume count (normal . seen_along > 0), so that a thin wall does not lend its far face.
+  /// Nearest point of the surface within radius_m. With `seen_along` only faces that a beam in that direction can meet
+  /// from within the enclosed volume count (normal . seen_along > 0), so that a thin wall does not lend its far face.
   std::optional<Closest> closest(const Vec3& p, double radius_m, const std::optional<Vec3>& seen_along = {}) const;
 
  private:

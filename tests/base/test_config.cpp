@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
 #include "base/config.h"
 #include "base/error.h"
+
+#include <gmock/gmock.h>
 
 namespace adit {
 namespace {
@@ -17,7 +17,8 @@ struct Settings {
 
 Fields fields(Settings& s) {
   Fields all{{"on", &s.on, ""}, {"count", &s.count, "", 1, 10}};
-  append(all, "mine", {{"width_m", &s.width_m, "", 0.5, 20}, {"kind", &s.kind, "", {"plan", "panel"}}, {"at", &s.at, ""}});
+  append(all, "mine",
+         {{"width_m", &s.width_m, "", 0.5, 20}, {"kind", &s.kind, "", {"plan", "panel"}}, {"at", &s.at, ""}});
   return all;
 }
 
@@ -46,7 +47,8 @@ TEST(Config, ReadsWhatItWrote) {
 }
 
 TEST(Config, AnErrorNamesFileLineKeyAndWhatIsRight) {
-  EXPECT_EQ(error_of("on = true\n[mine]\nwidth_n = 2.0\n"), "a.toml:3: unknown key 'mine.width_n' (did you mean 'mine.width_m'?)");
+  EXPECT_EQ(error_of("on = true\n[mine]\nwidth_n = 2.0\n"),
+            "a.toml:3: unknown key 'mine.width_n' (did you mean 'mine.width_m'?)");
   EXPECT_EQ(error_of("[mine]\nwidth_m = -1.0\n"), "a.toml:2: 'mine.width_m' is -1, must be 0.5 to 20");
   EXPECT_EQ(error_of("[mine]\nwidth_m = nan\n"), "a.toml:2: 'mine.width_m' is nan, must be finite");
   EXPECT_EQ(error_of("count = 1.5"), "a.toml:1: 'count' must be a whole number");

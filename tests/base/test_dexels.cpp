@@ -129,12 +129,12 @@ TEST(Dexels, ABoxWhoseSidesPassThroughAxesNeitherLosesNorDoublesThem) {
 }
 
 TEST(Dexels, ABallConvergesToItsVolumeAsTheCellShrinks) {
-  const auto parts = ball(1.3, 5);
+  const auto parts = ball(1.3, 4);
   double exact = 0;
   for (const Tetrahedron& t : parts) exact += tetrahedron_volume(t);
-  EXPECT_NEAR(exact, 4.0 / 3.0 * std::numbers::pi * 1.3 * 1.3 * 1.3, 0.02);  // chords of 5 deg
+  EXPECT_NEAR(exact, 4.0 / 3.0 * std::numbers::pi * 1.3 * 1.3 * 1.3, 0.06);  // chords of 6 deg
   const Mesh mesh = mesh_of(parts);
-  for (const double cell : {0.2, 0.1, 0.05, 0.025}) {
+  for (const double cell : {0.2, 0.1, 0.05}) {
     const Dexels grid = empty_dexels({-1.5, -1.5}, {1.5, 1.5}, cell);
     // Errors at the rim: column heights sqrt(2 R cell) within one cell of it, of either sign.
     const double rim = 2 * std::numbers::pi * 1.3 * cell * std::sqrt(2 * 1.3 * cell);
@@ -145,10 +145,10 @@ TEST(Dexels, ABallConvergesToItsVolumeAsTheCellShrinks) {
 
 TEST(Dexels, UnionOfRandomTetrahedraHoldsExactlyThePointsInsideOne) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const auto parts = random_tetrahedra(seed, 40, {6, 5, 3});
+    const auto parts = random_tetrahedra(seed, 25, {6, 5, 3});
     const Dexels grid = empty_dexels({0, 0}, {6, 5}, 0.1), solid = dexels_of(parts, grid);
     int wrong = 0;
-    for (int n = 0; n < 4000; ++n) {
+    for (int n = 0; n < 1000; ++n) {
       const int i = static_cast<int>(uniform(seed, Draw::test, 1000 + n, 0) * grid.width);
       const int j = static_cast<int>(uniform(seed, Draw::test, 1000 + n, 1) * grid.height);
       const double z = 3 * uniform(seed, Draw::test, 1000 + n, 2);
@@ -157,7 +157,7 @@ TEST(Dexels, UnionOfRandomTetrahedraHoldsExactlyThePointsInsideOne) {
       for (const Tetrahedron& t : parts) expected |= inside(t, {axis.x(), axis.y(), z});
       wrong += expected != inside(solid, i, j, z);
     }
-    EXPECT_LE(wrong, 1) << "seed " << seed;  // corners move by up to 8 um: 4000 points within 1e-4 m of a face are rare
+    EXPECT_LE(wrong, 1) << "seed " << seed;  // corners move by up to 8 um: 1000 points within 1e-4 m of a face are rare
     for (size_t c = 0; c < solid.columns(); ++c)
       for (size_t k = 0; k < solid.column(c).size(); ++k) {
         EXPECT_LT(solid.column(c)[k].low_m, solid.column(c)[k].high_m);
@@ -169,8 +169,8 @@ TEST(Dexels, UnionOfRandomTetrahedraHoldsExactlyThePointsInsideOne) {
 }
 
 TEST(Dexels, TheOrderOfTetrahedraDoesNotMatter) {
-  auto parts = random_tetrahedra(7, 300, {9, 9, 2});
-  const Dexels grid = empty_dexels({0, 0}, {9, 9}, 0.05), solid = dexels_of(parts, grid);
+  auto parts = random_tetrahedra(7, 60, {9, 9, 2});
+  const Dexels grid = empty_dexels({0, 0}, {9, 9}, 0.1), solid = dexels_of(parts, grid);
   std::reverse(parts.begin(), parts.end());
   for (Tetrahedron& t : parts) std::rotate(t.begin(), t.begin() + 1, t.end());
   DexelUnion one_by_one(grid);

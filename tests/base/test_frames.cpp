@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/frames.h"
+#include "base/rng.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
-
-#include "base/frames.h"
-#include "base/rng.h"
 
 namespace adit {
 namespace {

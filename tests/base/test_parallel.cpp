@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/parallel.h"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
-
-#include "base/parallel.h"
 
 namespace adit {
 namespace {
@@ -41,9 +41,14 @@ TEST_F(Parallel, ASumHasTheSameBitsOnAnyNumberOfThreads) {
 TEST_F(Parallel, EverySlotIsVisitedOnceAndAnExceptionComesThrough) {
   set_threads(2);
   std::vector<int> visits(1001, 0);
-  parallel_for(visits.size(), [&](size_t i) { ++visits[i]; }, 10);
+  parallel_for(
+      visits.size(), [&](size_t i) { ++visits[i]; }, 10);
   for (int v : visits) ASSERT_EQ(v, 1);
-  EXPECT_THROW(parallel_for(10, [](size_t i) { if (i == 3) throw std::runtime_error("three"); }), std::runtime_error);
+  EXPECT_THROW(parallel_for(10,
+                            [](size_t i) {
+                              if (i == 3) throw std::runtime_error("three");
+                            }),
+               std::runtime_error);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
 #include "base/error.h"
 #include "base/files.h"
 #include "base/rig.h"
+
+#include <gmock/gmock.h>
 
 namespace adit {
 namespace {
@@ -12,7 +12,8 @@ TEST(Laser, Lms200FiresAHalfDegreeScanInTwoTurnsAndTheLinkThinsIt) {
   const LaserModel m = load_laser("lms200", 38400);
   EXPECT_EQ(m.beams, 361);
   EXPECT_NEAR(m.beam_angle_rad(180), 0, 1e-12);
-  EXPECT_NEAR(m.beam_offset_s(1) - m.beam_offset_s(0), 0.01332 + 0.01332 / 720, 1e-9);  // the next turn, half a degree on
+  EXPECT_NEAR(m.beam_offset_s(1) - m.beam_offset_s(0), 0.01332 + 0.01332 / 720,
+              1e-9);  // the next turn, half a degree on
   EXPECT_NEAR(m.beam_offset_s(360), 0.00666, 1e-9);
   EXPECT_NEAR(1 / m.interval_s, 4.17, 0.01);  // SICK telegram listing: 8 of 9 scans are skipped
   EXPECT_NEAR(load_laser("lms200", 500000).interval_s, 0.02664, 1e-9);
@@ -35,7 +36,8 @@ TEST(Rig, ABadRigIsAnsweredWithFileLineAndKey) {
     }
     return "no error";
   };
-  EXPECT_THAT(error_of("[[laser]]\nname = 'a'\npitch_degs = 3\n"), ::testing::HasSubstr("adit_rig.toml:3: unknown key 'pitch_degs' (did you mean 'pitch_deg'?)"));
+  EXPECT_THAT(error_of("[[laser]]\nname = 'a'\npitch_degs = 3\n"),
+              ::testing::HasSubstr("adit_rig.toml:3: unknown key 'pitch_degs' (did you mean 'pitch_deg'?)"));
   EXPECT_THAT(error_of("[[laser]]\nname='a'\nmodel='lms99'\n"), ::testing::HasSubstr("lms99"));
   EXPECT_THAT(error_of("name='x'\n"), ::testing::HasSubstr("no [[laser]]"));
   EXPECT_THAT(error_of("[[laser]]\nname='a'\n[[laser]]\nname='a'\n"), ::testing::HasSubstr("a second time"));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/rng.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "base/rng.h"
 
 namespace adit {
 namespace {
@@ -25,7 +25,7 @@ TEST(Rng, UniformHasTheMomentsOfAUniform) {
     sum += u;
     squares += u * u;
   }
-  EXPECT_NEAR(sum / n, 0.5, 5 * std::sqrt(1.0 / 12 / n));              // five standard errors
+  EXPECT_NEAR(sum / n, 0.5, 5 * std::sqrt(1.0 / 12 / n));  // five standard errors
   EXPECT_NEAR(squares / n, 1.0 / 3, 5 * std::sqrt(4.0 / 45 / n));
 }
 

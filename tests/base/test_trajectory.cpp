@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
-#include <filesystem>
-
 #include "base/error.h"
 #include "base/files.h"
 #include "base/trajectory.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
 
 namespace adit {
 namespace {
@@ -41,7 +41,8 @@ TEST(Trajectory, ABadLineIsNamed) {
     }
     return "no error";
   };
-  EXPECT_THAT(error_of("# head\n0 0 0 0 0 0 0 1\n1 0 0 nan 0 0 0 1\n"), ::testing::HasSubstr("b.tum:3: not a finite number"));
+  EXPECT_THAT(error_of("# head\n0 0 0 0 0 0 0 1\n1 0 0 nan 0 0 0 1\n"),
+              ::testing::HasSubstr("b.tum:3: not a finite number"));
   EXPECT_THAT(error_of("1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"), ::testing::HasSubstr("b.tum:2: the stamp does not grow"));
   EXPECT_THAT(error_of("1 2 3\n"), ::testing::HasSubstr("b.tum:1: expected"));
   EXPECT_THAT(error_of("1 0 0 0 0 0 0 2\n"), ::testing::HasSubstr("quaternion"));
@@ -51,10 +52,11 @@ TEST(Trajectory, ABadLineIsNamed) {
 TEST(Files, AFailedWriteLeavesTheEarlierFileAndNoOther) {
   const std::string file = folder + "/kept/x.txt";
   write_text(file, "old");
-  EXPECT_THROW(write_whole(file, [](const std::string& temporary) {
-                 write_text(temporary, "half");
-                 throw Error("no more room", Fault::file);
-               }),
+  EXPECT_THROW(write_whole(file,
+                           [](const std::string& temporary) {
+                             write_text(temporary, "half");
+                             throw Error("no more room", Fault::file);
+                           }),
                Error);
   EXPECT_EQ(read_text(file), "old");
   int files = 0;

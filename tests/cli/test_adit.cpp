@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command as its users call it: the built program, its files, its exit codes, its words.
+#include "base/files.h"
+
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
-
-#include "base/files.h"
 
 namespace adit {
 namespace {
@@ -26,7 +26,8 @@ struct Answer {
 
 Answer adit_says(const std::string& words) {
   const std::string at = ::testing::TempDir() + "adit_says_" + std::to_string(::getpid());
-  const int status = std::system((std::string(ADIT_BINARY) + " " + words + " >" + at + ".out 2>" + at + ".err").c_str());
+  const int status =
+      std::system((std::string(ADIT_BINARY) + " " + words + " >" + at + ".out 2>" + at + ".err").c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(at + ".out"), read_text(at + ".err")};
 }
 
@@ -61,9 +62,10 @@ Answer TinyRun::answer_;
 
 TEST_F(TinyRun, DoesTheWholeJobAndLeavesEveryFileOfTheContract) {
   ASSERT_EQ(answer_.exit_code, 0) << answer_.err;
-  for (const char* file : {"scenario.toml", "timing.json", "world/mine.ply", "world/mine.glb", "world/truth.json", "recording/log.h5",
-                           "recording/truth.h5", "map/trajectory.tum", "map/grid.pgm", "map/grid.yaml", "map/points.ply",
-                           "map/surface.ply", "map/map.json", "score.json", "report/index.html"})
+  for (const char* file :
+       {"scenario.toml", "timing.json", "world/mine.ply", "world/mine.glb", "world/truth.json", "recording/log.h5",
+        "recording/truth.h5", "map/trajectory.tum", "map/grid.pgm", "map/grid.yaml", "map/points.ply",
+        "map/surface.ply", "map/map.json", "score.json", "report/index.html"})
     EXPECT_TRUE(fs::exists(out_ + "/" + file)) << file;
 }
 
@@ -119,7 +121,8 @@ TEST_F(TinyRun, AResolvedScenarioMakesTheSameMine) {
 
 TEST_F(TinyRun, ScoringAndReportingAgainGivesTheSameBytes) {
   const auto before = bytes_of(out_);
-  const Answer scored = adit_says("score --quiet --world " + out_ + "/world --truth " + out_ + "/recording/truth.h5 --map " + out_ + "/map");
+  const Answer scored = adit_says("score --quiet --world " + out_ + "/world --truth " + out_ +
+                                  "/recording/truth.h5 --map " + out_ + "/map");
   ASSERT_EQ(scored.exit_code, 0) << scored.err;
   const Answer reported = adit_says("report --quiet " + out_);
   ASSERT_EQ(reported.exit_code, 0) << reported.err;
@@ -129,7 +132,8 @@ TEST_F(TinyRun, ScoringAndReportingAgainGivesTheSameBytes) {
 TEST_F(TinyRun, TheTruthOfAnotherMineIsNotComparable) {
   const std::string dir = fresh_folder("other_mine");
   ASSERT_EQ(adit_says("world " + tiny + " --seed 77 --quiet -o " + dir).exit_code, 0);
-  const Answer said = adit_says("score --world " + dir + "/world --truth " + out_ + "/recording/truth.h5 --map " + out_ + "/map -o " + dir);
+  const Answer said = adit_says("score --world " + dir + "/world --truth " + out_ + "/recording/truth.h5 --map " +
+                                out_ + "/map -o " + dir);
   EXPECT_EQ(said.exit_code, 3) << said.err;
   EXPECT_FALSE(fs::exists(dir + "/score.json"));
   fs::remove_all(dir);
@@ -162,20 +166,20 @@ TEST(Words, ABadKeyNamesFileLineAndRemedyAndWritesNothing) {
 }
 
 TEST(Words, BadInputHasExitCodeTwoAndOneClearLine) {
-  for (const auto& [words, part] : std::map<std::string, std::string>{
-           {"run no-such-scenario", "there are:"},
-           {"run /no/such/file.toml", "no such file"},
-           {"run mini --set world.kind=cave", "must be one of"},
-           {"run mini --set nonsense", "key=value"},
-           {"run mini --set vehicle=tank", "tank"},
-           {"run mini --set sensors.rig=none", "none"},
-           {"run mini --set sensors.baud=1200", "1200"},
-           {"map /no/such/log.h5", "no such file"},
-           {"score --world /none --truth /none --map /none", "/none"},
-           {"report /none", "no such folder"},
-           {"list nonsense", "there are"},
-           {"frobnicate", ""},
-           {"", ""}}) {
+  for (const auto& [words, part] :
+       std::map<std::string, std::string>{{"run no-such-scenario", "there are:"},
+                                          {"run /no/such/file.toml", "no such file"},
+                                          {"run mini --set world.kind=cave", "must be one of"},
+                                          {"run mini --set nonsense", "key=value"},
+                                          {"run mini --set vehicle=tank", "tank"},
+                                          {"run mini --set sensors.rig=none", "none"},
+                                          {"run mini --set sensors.baud=1200", "1200"},
+                                          {"map /no/such/log.h5", "no such file"},
+                                          {"score --world /none --truth /none --map /none", "/none"},
+                                          {"report /none", "no such folder"},
+                                          {"list nonsense", "there are"},
+                                          {"frobnicate", ""},
+                                          {"", ""}}) {
     const std::string out = fresh_folder("bad_input");
     const Answer said = adit_says(words + (words.starts_with("run") || words.starts_with("map") ? " -o " + out : ""));
     EXPECT_EQ(said.exit_code, 2) << words << "\n" << said.err;

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <limits>
 #include <numbers>
+#include <string>
 
 namespace adit {
 namespace {
@@ -102,6 +103,17 @@ TEST(Odometry, OneScanIsAPoseAndNoneIsAnError) {
   EXPECT_EQ(estimate_motion(one, log.mount, {}).X_MB.size(), 1u);
   one.stamp_s.clear(), one.range_m.clear();
   EXPECT_THROW(estimate_motion(one, log.mount, {}), Error);
+}
+
+TEST(Odometry, AStampThatRepeatsIsAnErrorThatNamesLaserAndScan) {
+  PlanLog log = straight_and_round(0.05, 100);
+  log.scans.stamp_s[7] = log.scans.stamp_s[6];
+  try {
+    estimate_motion(log.scans, log.mount, {});
+    FAIL() << "no error";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("'front': scan 7"), std::string::npos) << e.what();
+  }
 }
 
 TEST(Odometry, TheSameBitsOnAnyNumberOfThreads) {

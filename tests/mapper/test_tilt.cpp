@@ -130,8 +130,8 @@ TEST(PlanarMotion, FollowsATurningVehicleBetweenItsStampsAcrossTheCutOfYaw) {
 TEST(Tilt, OfAShakenCartInASmoothLevelTunnelIsFoundToAFewHundredthsOfADegree) {
   Ride ride;
   ride.pitch_deg = 2, ride.roll_deg = 1, ride.heave_m = 0.01;
-  const Trajectory truth = ride_along(straight_line(2, 32), {}, ride);
-  const Log log = tube_log(fine_box_mesh({0, -1.85, 0}, {36, 1.85, 1.9}, 5), load_rig("cart4", 38400), truth, 0.005, 1);
+  const Trajectory truth = ride_along(straight_line(2, 20), {}, ride);
+  const Log log = tube_log(fine_box_mesh({0, -1.85, 0}, {24, 1.85, 1.9}, 5), load_rig("cart4", 38400), truth, 0.005, 1);
   const Planar planar = planar_of(log, truth);
   const TiltSolution solution = solve_tilt(log, planar.stamp_s, planar.pose, {});
   const TiltError error = error_of(solution.path, truth);
@@ -148,8 +148,8 @@ TEST(Tilt, OfARoughRingThatRollsByMetresCloses) {
   ground.roll_m = 0.15, ground.rough_m = 0.03;
   Ride ride;
   ride.pitch_deg = 1.5, ride.roll_deg = 1, ride.heave_m = 0.01, ride.stop_s = 5;
-  const World ring = ring_world(18, 3.7, 1.9, 0.2);
-  const Trajectory truth = ride_along(ring_line(18, 3.7, 1.7, 1.25), ground, ride);
+  const World ring = ring_world(15, 3.7, 1.9, 0.2);
+  const Trajectory truth = ride_along(ring_line(15, 3.7, 1.7, 1.2), ground, ride);
   const Log log = tube_log(bent(ring.mesh, ground), load_rig("cart4", 38400), truth, 0.005, 2);
   const Planar planar = planar_of(log, truth, 0.005);
   const TiltSolution solution = solve_tilt(log, planar.stamp_s, planar.pose, {});
@@ -162,8 +162,8 @@ TEST(Tilt, OfARoughRingThatRollsByMetresCloses) {
 TEST(Tilt, RangeErrorsOfTheLasersAreFound) {
   Ride ride;
   ride.pitch_deg = 1.5;
-  const Trajectory truth = ride_along(straight_line(2, 22), {}, ride);
-  Log log = tube_log(fine_box_mesh({0, -1.85, 0}, {26, 1.85, 1.9}, 5), load_rig("cart4", 38400), truth, 0.003, 3);
+  const Trajectory truth = ride_along(straight_line(2, 16), {}, ride);
+  Log log = tube_log(fine_box_mesh({0, -1.85, 0}, {20, 1.85, 1.9}, 5), load_rig("cart4", 38400), truth, 0.003, 3);
   const int ahead = find_view(log.rig, View::forward_vertical), up = find_view(log.rig, View::up);
   for (float& r : log.scans[ahead].range_m) r += 0.012F;
   for (float& r : log.scans[up].range_m) r -= 0.008F;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/rng.h"
+#include "rays/caster.h"
+#include "tests/support/shapes.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
-
-#include "base/rng.h"
-#include "rays/caster.h"
-#include "tests/support/shapes.h"
 
 namespace adit {
 namespace {
@@ -70,7 +70,8 @@ TEST(Caster, ClosestEqualsTheBestOfAllFaces) {
 }
 
 TEST(Caster, AThinWallDoesNotLendItsFarFace) {
-  // Two rooms with 0.1 m of rock between; a point measured from the left room and 6 cm too far lies nearer to the right one.
+  // Two rooms with 0.1 m of rock between; a point measured from the left room and 6 cm too far lies nearer to the right
+  // one.
   Mesh mesh = box_mesh({0, 0, 0}, {5, 4, 2});
   const Mesh right = box_mesh({5.1, 0, 0}, {9, 4, 2});
   for (auto f : right.face) mesh.face.push_back({f[0] + 8, f[1] + 8, f[2] + 8});

@@ -8,8 +8,8 @@
 namespace adit {
 namespace {
 
-// Adds the parallelogram at `corner` spanned by u and v, normal along u x v, cut into squares of about edge_m; vertices shared
-// by position.
+// Adds the parallelogram at `corner` spanned by u and v, normal along u x v, cut into squares of about edge_m; vertices
+// shared by position.
 class Builder {
  public:
   Mesh mesh;
@@ -30,7 +30,8 @@ class Builder {
   std::map<std::array<std::int64_t, 3>, std::uint32_t> seen_;
 
   std::uint32_t index(const Vec3& p) {
-    const std::array<std::int64_t, 3> key{std::llround(p.x() * 1e6), std::llround(p.y() * 1e6), std::llround(p.z() * 1e6)};
+    const std::array<std::int64_t, 3> key{std::llround(p.x() * 1e6), std::llround(p.y() * 1e6),
+                                          std::llround(p.z() * 1e6)};
     const auto [it, added] = seen_.try_emplace(key, static_cast<std::uint32_t>(mesh.vertex.size()));
     if (added) mesh.vertex.push_back(p);
     return it->second;
@@ -73,15 +74,18 @@ Mesh fine_box_mesh(const Vec3& low, const Vec3& high, double edge_m) {
   return b.mesh;
 }
 
-Mesh box_mesh(const Vec3& low, const Vec3& high) { return fine_box_mesh(low, high, 1e9); }
+Mesh box_mesh(const Vec3& low, const Vec3& high) {
+  return fine_box_mesh(low, high, 1e9);
+}
 
 Mesh sphere_mesh(const Vec3& centre, double radius_m, int rounds) {
   const double g = (1 + std::sqrt(5.0)) / 2;
-  std::vector<Vec3> v{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  std::vector<std::array<std::uint32_t, 3>> f{{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                                              {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                                              {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  std::vector<Vec3> v{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  std::vector<std::array<std::uint32_t, 3>> f{{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                              {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                              {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                              {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
   for (int round = 0; round < rounds; ++round) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;
     const auto mid = [&](std::uint32_t a, std::uint32_t b) {
@@ -92,7 +96,8 @@ Mesh sphere_mesh(const Vec3& centre, double radius_m, int rounds) {
     std::vector<std::array<std::uint32_t, 3>> finer;
     for (const auto& [a, b, c] : f) {
       const std::uint32_t ab = mid(a, b), bc = mid(b, c), ca = mid(c, a);
-      for (const std::array<std::uint32_t, 3>& t : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}) finer.push_back(t);
+      for (const std::array<std::uint32_t, 3>& t : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
+        finer.push_back(t);
     }
     f = std::move(finer);
   }
@@ -127,9 +132,11 @@ World ring_world(double outer_m, double width_m, double height_m, double edge_m)
     b.plate(corner[k], across[k], along[k], edge_m, Label::floor, k);
     b.plate(corner[k] + up, along[k], across[k], edge_m, Label::roof, k);
   }
-  // Ribs: the outer side faces outward, the pillar's faces towards its middle. Cut as the strips are, so that edges meet.
+  // Ribs: the outer side faces outward, the pillar's faces towards its middle. Cut as the strips are, so that edges
+  // meet.
   const auto ribs = [&](const std::vector<Vec3>& ring, int part) {
-    for (size_t k = 0; k < ring.size(); ++k) b.plate(ring[k], ring[(k + 1) % ring.size()] - ring[k], up, edge_m, Label::rib, part);
+    for (size_t k = 0; k < ring.size(); ++k)
+      b.plate(ring[k], ring[(k + 1) % ring.size()] - ring[k], up, edge_m, Label::rib, part);
   };
   ribs({{-o, -o, 0}, {i, -o, 0}, {o, -o, 0}, {o, i, 0}, {o, o, 0}, {-i, o, 0}, {-o, o, 0}, {-o, -i, 0}}, -1);
   ribs({{-i, -i, 0}, {-i, i, 0}, {i, i, 0}, {i, -i, 0}}, 0);
