@@ -295,6 +295,36 @@ constexpr std::array<std::uint8_t, 64> crossed_faces = [] {
   return table;
 }();
 
+/// Where the shadow of a tetrahedron on the plane lies along the row at y: a superset by a few units.
+struct Shadow {
+  explicit Shadow(const std::array<Corner, 4>& corner) : corner(corner) {
+    for (int e = 0; e < 6; ++e) {
+      const Corner &a = corner[edge_ends[e][0]], &b = corner[edge_ends[e][1]];
+      slope[e] = a.y == b.y ? 0 : static_cast<double>(b.x - a.x) / static_cast<double>(b.y - a.y);
+    }
+  }
+
+  std::pair<std::int64_t, std::int64_t> along(std::int64_t y) const {
+    constexpr std::int64_t slack = 4;  // units: axes on an edge, and the rounding of the products below
+    std::int64_t low = std::numeric_limits<std::int64_t>::max(), high = std::numeric_limits<std::int64_t>::min();
+    const auto reach = [&](std::int64_t x) { low = std::min(low, x), high = std::max(high, x); };
+    for (int e = 0; e < 6; ++e) {
+      const Corner &a = corner[edge_ends[e][0]], &b = corner[edge_ends[e][1]];
+      if (std::min(a.y, b.y) > y + slack || std::max(a.y, b.y) < y - slack) continue;
+      if (std::abs(a.y - b.y) <= 2 * slack) {  // along the row
+        reach(a.x), reach(b.x);
+      } else {
+        const std::int64_t within = std::clamp(y, std::min(a.y, b.y), std::max(a.y, b.y));
+        reach(a.x + static_cast<std::int64_t>(slope[e] * static_cast<double>(within - a.y)));
+      }
+    }
+    return {low - slack, high + slack};
+  }
+
+  const std::array<Corner, 4>& corner;
+  double slope[6];
+};
+
 }  // namespace
 
 void DexelUnion::Impl::add_to_tile(size_t t, const std::array<Corner, 4>& corner) {
@@ -311,13 +341,17 @@ void DexelUnion::Impl::add_to_tile(size_t t, const std::array<Corner, 4>& corner
     for (int i = columns.begin; i < columns.end; ++i) by_column[e][i - first_i] = (b.y - a.y) * (axes.x[i] - a.x);
   }
   Tile& tile = tiles[t];
+  const Shadow shadow(corner);
   for (int j = rows.begin; j < rows.end; ++j) {
+    const auto [low, high] = shadow.along(axes.y[j]);
+    if (low > high) continue;
+    const Range in_row = overlap(columns, axes_within(low, high, grid, grid.width));
     std::int64_t by_row[6];
     for (int e = 0; e < 6; ++e) {
       const Corner &a = corner[edge_ends[e][0]], &b = corner[edge_ends[e][1]];
       by_row[e] = (b.x - a.x) * (axes.y[j] - a.y);
     }
-    for (int i = columns.begin; i < columns.end; ++i) {
+    for (int i = in_row.begin; i < in_row.end; ++i) {
       std::int64_t w[6];
       unsigned sides = 0;
       for (int e = 0; e < 6; ++e) {
@@ -340,6 +374,10 @@ void DexelUnion::Impl::add_to_tile(size_t t, const std::array<Corner, 4>& corner
       insert(tile[static_cast<size_t>(j - first_j) * tile_cells + (i - first_i)], s);
     }
   }
+}
+
+double enclosed_volume(const Tetrahedron& t) {
+  return std::abs((t[1] - t[0]).cross(t[2] - t[0]).dot(t[3] - t[0])) / 6;
 }
 
 DexelUnion::DexelUnion(const Dexels& like) : impl_(std::make_unique<Impl>(like)) {}

@@ -39,6 +39,8 @@ struct Dexels {
 
 /// Four corners in any order.
 using Tetrahedron = std::array<Vec3, 4>;
+/// Cubic metres.
+double enclosed_volume(const Tetrahedron& t);
 
 /// An empty solid that covers the box [low, high] in plan, its origin a multiple of cell_m: solids of the same cell
 /// size share their columns.

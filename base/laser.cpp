@@ -4,6 +4,7 @@
 #include "base/config.h"
 #include "base/error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -13,6 +14,10 @@ namespace adit {
 double LaserModel::beam_offset_s(int k) const {
   // Turn k % interlace; within a turn the mirror sweeps 360 deg in turn_s, the field of view at even speed.
   return (k % interlace) * turn_s + (beam_angle_rad(k) + fov_rad / 2) / (2 * std::numbers::pi) * turn_s;
+}
+
+double LaserModel::least_reflectivity(double range_m) const {
+  return reflectivity_at_4m * std::pow(std::max(range_m / 4, 1.0), reflectivity_exponent);
 }
 
 LaserModel load_laser(const std::string& name_or_file, int baud) {

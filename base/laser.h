@@ -28,6 +28,9 @@ struct LaserModel {
   double beam_angle_rad(int k) const { return -fov_rad / 2 + fov_rad * k / (beams - 1); }
   /// When beam k leaves after the scan's stamp.
   double beam_offset_s(int k) const;
+  /// Least effective reflectivity, reflectivity * cos(incidence), that is noticed at a range: flat up to 4 m, then growing
+  /// by the model's power; 0 where the model states none.
+  double least_reflectivity(double range_m) const;
 };
 
 /// A bundled laser by name, or one from a TOML file; baud > 0 sets interval_s by the serial link (SICK telegram

@@ -77,7 +77,7 @@ Bench make_bench(const World& world, const Truth& truth, const Rig& nominal, con
           progress,
           Caster(world.mesh),
           PassageMap(world),
-          TrueScans(truth),
+          TrueScans(truth, world.mesh),
           laser,
           nominal_body(truth, nominal, laser),
           {},

@@ -8,7 +8,7 @@
 
 namespace adit {
 
-TrueScans::TrueScans(const Truth& truth) : truth_(&truth) {
+TrueScans::TrueScans(const Truth& truth, const Mesh& mesh) : truth_(&truth), mesh_(&mesh) {
   if (truth.scans.size() != truth.rig.mounts.size())
     throw Error("the truth has " + std::to_string(truth.rig.mounts.size()) + " lasers but scans of " +
                 std::to_string(truth.scans.size()));
@@ -27,6 +27,13 @@ Pose TrueScans::X_WS(size_t laser, size_t scan) const {
   return truth_->drive.path.at(truth_->scans[laser].stamp_s[scan]) * mount(laser).X_BS;
 }
 
+bool TrueScans::echoes(const LaserModel& laser, std::int32_t face, double range_m, double incidence_rad) const {
+  if (face < 0 || range_m > laser.range_max_m) return false;
+  if (mesh_->reflectivity.empty()) return true;
+  return mesh_->reflectivity.at(static_cast<size_t>(face)) * std::cos(incidence_rad) >=
+         laser.least_reflectivity(range_m);
+}
+
 TrueBeam TrueScans::beam(size_t laser, size_t scan, int k) const {
   const Mount& m = mount(laser);
   const ScanTruth& s = truth_->scans[laser];
@@ -39,7 +46,7 @@ TrueBeam TrueScans::beam(size_t laser, size_t scan, int k) const {
           range_m,
           static_cast<double>(s.incidence_rad[at]),
           s.face[at],
-          s.face[at] >= 0 && range_m <= m.laser.range_max_m};
+          echoes(m.laser, s.face[at], range_m, static_cast<double>(s.incidence_rad[at]))};
 }
 
 std::vector<TrueBeam> TrueScans::fan(size_t laser, size_t scan, int step) const {

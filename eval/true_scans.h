@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/frames.h"
+#include "base/mesh.h"
 #include "base/recording.h"
 
 #include <cstddef>
@@ -15,17 +16,18 @@ struct TrueBeam {
   double range_m;  // to what it met
   double incidence_rad;
   std::int32_t face;  // of the world's mesh
-  bool met;           // the mine's surface within the laser's range; else the vehicle, or nothing that could echo
+  bool met;           // the mine's surface, near and bright enough for an echo; else the vehicle, or nothing to be seen
 
   Vec3 end() const { return origin + range_m * direction; }
 };
 
-/// What the lasers would have told without noise: every beam from the true pose of its true mount. The truth must
-/// outlive it.
+/// What the lasers would have told without noise: every beam from the true pose of its true mount. An echo comes back from
+/// within the mode's range where reflectivity * cos(incidence) reaches the least that the laser's sheet states there; a mesh
+/// that states no reflectivity echoes everywhere. Truth and mesh must outlive it.
 class TrueScans {
  public:
   /// Error where the arrays of the truth do not fit each other.
-  explicit TrueScans(const Truth& truth);
+  TrueScans(const Truth& truth, const Mesh& mesh);
 
   size_t lasers() const { return truth_->scans.size(); }
   size_t scans(size_t laser) const { return truth_->scans[laser].stamp_s.size(); }
@@ -39,6 +41,9 @@ class TrueScans {
 
  private:
   const Truth* truth_;
+  const Mesh* mesh_;
+
+  bool echoes(const LaserModel& laser, std::int32_t face, double range_m, double incidence_rad) const;
 };
 
 }  // namespace adit

@@ -19,9 +19,6 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double jump_m = 0.5;  // ends of neighbouring beams farther apart lie on two surfaces
 constexpr double key_m = 0.05, key_rad = 5 * std::numbers::pi / 180;  // scans that moved by less span nothing yet
 
-double volume(const Tetrahedron& t) {
-  return std::abs((t[1] - t[0]).cross(t[2] - t[0]).dot(t[3] - t[0])) / 6;
-}
 double area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).cross(c - a).norm() / 2;
 }
@@ -41,8 +38,8 @@ void add_prism(const std::array<TrueBeam, 4>& beam, double thin_m, std::vector<T
   const Vec3 &o = beam[0].origin, &p = beam[2].origin;
   const Vec3 a = end(beam[0]), b = end(beam[1]), c = end(beam[2]), d = end(beam[3]);
   const std::array<Tetrahedron, 3> parts{{{o, a, b, d}, {o, a, d, c}, {o, c, d, p}}};
-  const double thickness_m =
-      (volume(parts[0]) + volume(parts[1]) + volume(parts[2])) / std::max(area(o, a, b), area(p, c, d));
+  const double thickness_m = (enclosed_volume(parts[0]) + enclosed_volume(parts[1]) + enclosed_volume(parts[2])) /
+                             std::max(area(o, a, b), area(p, c, d));
   if (thickness_m > thin_m) out.insert(out.end(), parts.begin(), parts.end());
 }
 

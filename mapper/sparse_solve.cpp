@@ -8,15 +8,18 @@
 #include <memory>
 
 extern "C" void openblas_set_num_threads(int);
+extern "C" void omp_set_max_active_levels(int);
 
 namespace adit {
 namespace {
 
-/// CHOLMOD's workspace; one BLAS thread, since sums in another order would give other bits.
+/// CHOLMOD's workspace; one BLAS thread, since sums in another order would give other bits. CHOLMOD's own loops ask for
+/// four OpenMP threads whatever the machine has, and wake them for every supernode: they stay asleep.
 class Workspace {
  public:
   Workspace() {
     openblas_set_num_threads(1);
+    omp_set_max_active_levels(0);
     cholmod_start(&common_);
     common_.print = 0;
     common_.nmethods = 1;

@@ -46,6 +46,15 @@ Vec3 shortened(const FanBeam& beam, double range_m) {
   return beam.range_m <= range_m ? beam.end : Vec3(beam.origin + (beam.end - beam.origin) * (range_m / beam.range_m));
 }
 
+/// Between equal triangles (apex, end, end) of two fans. Thinner ones, as of a fan that moves within its own plane, would
+/// fill whole columns with next to nothing.
+bool is_sheet(const std::array<Tetrahedron, 3>& wedge, double thin_m) {
+  const auto area = [](const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a).norm() / 2; };
+  const double sides =
+      std::max(area(wedge[0][0], wedge[0][1], wedge[0][2]), area(wedge[2][1], wedge[2][2], wedge[2][3]));
+  return !(enclosed_volume(wedge[0]) + enclosed_volume(wedge[1]) + enclosed_volume(wedge[2]) > thin_m * sides);
+}
+
 /// The wedge between beams k and k + 1 of the sections a and b as three tetrahedra.
 void add_wedge(const std::vector<FanBeam>& a, const std::vector<FanBeam>& b, size_t k, const VolumeSettings& settings,
                std::vector<Tetrahedron>& into) {
@@ -57,9 +66,8 @@ void add_wedge(const std::vector<FanBeam>& a, const std::vector<FanBeam>& b, siz
   const Vec3 a0 = shortened(a[k], end_m), a1 = shortened(a[k + 1], end_m);
   const Vec3 b0 = shortened(b[k], end_m), b1 = shortened(b[k + 1], end_m);
   const Vec3 &o = a[a.size() / 2].origin, &p = b[b.size() / 2].origin;  // one apex for the whole fan: no slits inside
-  into.push_back({o, a0, a1, b1});
-  into.push_back({o, a0, b0, b1});
-  into.push_back({o, p, b0, b1});
+  const std::array<Tetrahedron, 3> wedge = {{{o, a0, a1, b1}, {o, a0, b0, b1}, {o, p, b0, b1}}};
+  if (!is_sheet(wedge, settings.cell_m / 4)) into.insert(into.end(), wedge.begin(), wedge.end());
 }
 
 /// Adds what one laser swept.
@@ -121,11 +129,22 @@ Dexels closed(const Dexels& solid, double gap_m) {
   return result;
 }
 
-std::vector<int> carving_lasers(const Rig& rig) {
+/// The lasers of the views given, none where the rig has no upward one.
+std::vector<int> lasers_of(const Rig& rig, std::initializer_list<View> views) {
   std::vector<int> lasers;
-  if (const int up = find_view(rig, View::up); up >= 0) lasers.push_back(up);
-  if (const int down = find_view(rig, View::down); down >= 0 && !lasers.empty()) lasers.push_back(down);
+  if (find_view(rig, View::up) < 0) return lasers;
+  for (const View view : views)
+    if (const int laser = find_view(rig, view); laser >= 0) lasers.push_back(laser);
   return lasers;
+}
+
+std::vector<int> carving_lasers(const Rig& rig) {
+  return lasers_of(rig, {View::up, View::down, View::forward_vertical, View::horizontal});
+}
+
+/// Those whose echoes bound nearly all of the surface.
+std::vector<int> bounding_lasers(const Rig& rig) {
+  return lasers_of(rig, {View::up, View::down});
 }
 
 /// From the stated systematic errors of the lasers that bound the surface.
@@ -205,7 +224,7 @@ MappedVoid map_void(const Log& log, const Trajectory& X_MB, const VolumeSettings
   MappedVoid mapped;
   mapped.surface = boundary_of(solid, settings.surface_cells);
   mapped.volume_m3 = solid.volume_m3();
-  mapped.volume_sigma_m3 = sigma_of(log, lasers, mapped.surface, *mapped.volume_m3);
+  mapped.volume_sigma_m3 = sigma_of(log, bounding_lasers(log.rig), mapped.surface, *mapped.volume_m3);
   return mapped;
 }
 

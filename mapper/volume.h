@@ -30,7 +30,7 @@ Fields fields(VolumeSettings& s);
 /// @param X_MB  path of the body; scans that it does not cover wholly are left out
 PointCloud map_points(const Log& log, const Trajectory& X_MB, const VolumeSettings& settings);
 
-/// What the fans of the upward and downward lasers swept.
+/// What the fans of the lasers swept.
 struct MappedVoid {
   Mesh surface;                     // closed, normals into the rock, labelled by slope; empty without an upward laser
   std::optional<double> volume_m3;  // none without an upward laser
@@ -40,9 +40,10 @@ struct MappedVoid {
 /// The void between consecutive sections, as wedges (laser, two neighbouring echoes) x (two sections), united on
 /// columns. Where the four echoes of a wedge lie on two surfaces (a jump in range) it ends at the nearest; a beam
 /// without echo or unreadable bounds nothing. Sections more than section_gap_m apart are not joined, while the laser
-/// stands still none is added. Gaps up to close_m in height (between the fans) are filled. Without a downward laser the
-/// solid is what lies above the upward one. Sigma: each laser's constant error, half width bias_m taken as uniform,
-/// times the surface that it saw; 0.1 % of the volume for the columns. The error of the path is not in it.
+/// stands still none is added. Gaps up to close_m in height (between the fans) are filled. The forward lasers add what
+/// they sweep at crosscut mouths and in turns. Sigma: the constant error of the upward and the downward laser, half width
+/// bias_m taken as uniform, times the surface that each saw; 0.1 % of the volume for the columns. The error of the path is
+/// not in it.
 MappedVoid map_void(const Log& log, const Trajectory& X_MB, const VolumeSettings& settings,
                     const Progress& progress = {});
 

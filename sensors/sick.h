@@ -9,9 +9,6 @@ namespace adit {
 // surface is reflectivity * cos(incidence).
 // Sources: SICK Technical Description 8008970/06-2003, its detection charts digitised; telegram listing 8007954/2006.
 
-/// Least effective reflectivity that is noticed at a range: flat up to 4 m, then growing by the model's power.
-double least_reflectivity(const LaserModel& model, double range_m);
-
 /// Chance that an echo is noticed: logistic in ln(reflectivity), one half at the least reflectivity, `spread` its
 /// width.
 double detection_chance(const LaserModel& model, double effective_reflectivity, double range_m, double spread);

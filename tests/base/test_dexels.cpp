@@ -41,10 +41,6 @@ Mesh mesh_of(const std::vector<Tetrahedron>& tetrahedra) {
   return mesh;
 }
 
-double tetrahedron_volume(const Tetrahedron& t) {
-  return std::abs((t[1] - t[0]).cross(t[2] - t[0]).dot(t[3] - t[0])) / 6;
-}
-
 /// A ball as tetrahedra from its centre to an octahedron's faces, split `splits` times and pushed onto the sphere.
 std::vector<Tetrahedron> ball(double radius, int splits) {
   std::vector<std::array<Vec3, 3>> faces;
@@ -131,7 +127,7 @@ TEST(Dexels, ABoxWhoseSidesPassThroughAxesNeitherLosesNorDoublesThem) {
 TEST(Dexels, ABallConvergesToItsVolumeAsTheCellShrinks) {
   const auto parts = ball(1.3, 4);
   double exact = 0;
-  for (const Tetrahedron& t : parts) exact += tetrahedron_volume(t);
+  for (const Tetrahedron& t : parts) exact += enclosed_volume(t);
   EXPECT_NEAR(exact, 4.0 / 3.0 * std::numbers::pi * 1.3 * 1.3 * 1.3, 0.06);  // chords of 6 deg
   const Mesh mesh = mesh_of(parts);
   for (const double cell : {0.2, 0.1, 0.05}) {

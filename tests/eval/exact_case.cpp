@@ -79,7 +79,7 @@ Grid exact_grid(const ExactCase& c, const Pose& X_WM) {
   cell.cell_m = 0.1;
   cell.width = cell.height = 1;
   cell.log_odds = {0};
-  const TrueSection s = true_section(cell, X_WM, TrueScans(c.truth), 0, c.world.mesh);
+  const TrueSection s = true_section(cell, X_WM, TrueScans(c.truth, c.world.mesh), 0, c.world.mesh);
   Grid grid{s.cell_m, s.origin, s.width, s.height, {}};
   for (const CellTruth t : s.cell)
     grid.log_odds.push_back(t == CellTruth::free ? -20.f : t == CellTruth::wall ? 20.f : 0.f);
@@ -102,7 +102,7 @@ ExactCase drive_exactly(const World& world, const std::vector<Vec3>& line) {
   const Pose X_WM = c.truth.drive.path.X_WB.front(), X_MW = X_WM.inverse();
   Estimate& e = c.estimate;
   e.method = "exact";
-  const TrueScans scans(c.truth);
+  const TrueScans scans(c.truth, c.world.mesh);
   for (const double t : c.truth.scans[0].stamp_s) {
     e.path.stamp_s.push_back(t);
     e.path.X_WB.push_back(X_MW * c.truth.drive.path.at(t));

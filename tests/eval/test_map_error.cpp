@@ -16,7 +16,7 @@ constexpr double deg = std::numbers::pi / 180;
 // Points of the map moved along the true normals by `out_m`, + into the rock.
 ExactCase swollen(const ExactCase& exact, double out_m) {
   ExactCase c = exact;
-  const TrueScans scans(c.truth);
+  const TrueScans scans(c.truth, c.world.mesh);
   const Pose X_MW = c.truth.drive.path.X_WB.front().inverse();
   size_t point = 0;
   for (size_t l = 0; l < scans.lasers(); ++l)

@@ -65,6 +65,24 @@ TEST(VolumeError, ClaimingNothingOrEverythingScoresBadly) {
   EXPECT_GT(value(everything, "volume.extrapolated_m3"), 7e6);
 }
 
+TEST(VolumeError, WhatIsTooDarkToEchoIsNotObservable) {
+  const Score bright = score_of(tunnel_case());
+  ExactCase c = tunnel_case();
+  LaserModel& up = c.truth.rig.mounts.at(1).laser;
+  ASSERT_EQ(find_view(c.nominal, View::up), 1);
+  up.reflectivity_at_4m = 0.2;  // every surface of the tunnel is nearer than 4 m
+  up.reflectivity_exponent = 2;
+  const auto paint = [&](float reflectivity) {
+    c.world.mesh.reflectivity.assign(c.world.mesh.face.size(), reflectivity);
+    c.truth.world = world_hash(c.world);
+  };
+  paint(0.5F);  // seen up to an incidence of 66 deg; the farthest corner of the roof is met at 63
+  EXPECT_NEAR(value(score_of(c), "volume.observable_m3"), value(bright, "volume.observable_m3"), 1);
+  paint(0.1F);
+  // The downward fan alone is left: from its laser down and as far up as it overlapped.
+  EXPECT_LT(value(score_of(c), "volume.observable_m3"), 0.7 * value(bright, "volume.observable_m3"));
+}
+
 TEST(VolumeError, FinerColumnsGiveTheSameVolume) {
   ScoreSettings fine;
   fine.domain_cell_m = 0.05;

@@ -54,7 +54,7 @@ TEST(Noise, GrowsTowardsTheThresholdAndWithTheSlantingSpot) {
   const LaserModel model = load_laser("lms200", 38400);
   SensorSettings s = exact();
   s.noise = true;
-  const double threshold = least_reflectivity(model, 12);
+  const double threshold = model.least_reflectivity(12);
   const double weak = std::hypot(0.005 * std::sqrt(2.0), 1e-3 / std::sqrt(12.0));
   EXPECT_NEAR(sample(model, wall(12, threshold), 0, s, 1).sd, weak, 5 * weak / std::sqrt(2.0 * beams));
   s.footprint = true;

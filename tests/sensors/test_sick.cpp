@@ -16,10 +16,10 @@ constexpr double spread = 0.1;
 
 TEST(Sick, ThresholdIsTheSheetsChart) {
   // Digitised from the chart: 1.85 % up to 4 m, 11 % at 10 m, 100 % at 30 m; a reading of it is good to 5 %.
-  EXPECT_NEAR(least_reflectivity(lms200(), 1), 0.0185, 0.05 * 0.0185);
-  EXPECT_NEAR(least_reflectivity(lms200(), 4), 0.0185, 0.05 * 0.0185);
-  EXPECT_NEAR(least_reflectivity(lms200(), 10), 0.11, 0.05 * 0.11);
-  EXPECT_NEAR(least_reflectivity(lms200(), 30), 1.0, 0.05);
+  EXPECT_NEAR(lms200().least_reflectivity(1), 0.0185, 0.05 * 0.0185);
+  EXPECT_NEAR(lms200().least_reflectivity(4), 0.0185, 0.05 * 0.0185);
+  EXPECT_NEAR(lms200().least_reflectivity(10), 0.11, 0.05 * 0.11);
+  EXPECT_NEAR(lms200().least_reflectivity(30), 1.0, 0.05);
 }
 
 TEST(Sick, ATargetOfTenPercentIsSeenAtNineMetresAndNotAtEleven) {
@@ -43,7 +43,7 @@ TEST(Sick, AnIdealLaserSeesEverything) {
 
 TEST(Sick, NoiseIsTheSheetsOnBrightTargetsAndRootTwoTimesAtTheThreshold) {
   EXPECT_NEAR(range_sigma_m(lms200(), 0.8, 5), 0.005, 0.005 * 0.001);
-  EXPECT_NEAR(range_sigma_m(lms200(), least_reflectivity(lms200(), 12), 12), 0.005 * std::sqrt(2), 1e-9);
+  EXPECT_NEAR(range_sigma_m(lms200(), lms200().least_reflectivity(12), 12), 0.005 * std::sqrt(2), 1e-9);
 }
 
 TEST(Sick, FootprintAddsNothingHeadOnAndAnEighthOfTheSpotAtFortyFiveDegrees) {
