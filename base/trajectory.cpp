@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <sstream>
 
 namespace adit {
@@ -34,29 +35,53 @@ double Trajectory::length_m() const {
   return d.empty() ? 0 : d.back();
 }
 
+namespace {
+
+// The finite numbers of a line, at most one more than a pose may have; `fail` says what is wrong with it.
+template <typename Fail>
+std::vector<double> numbers_of(const std::string& line, const Fail& fail) {
+  std::vector<double> v;
+  for (const char* at = line.c_str(); v.size() < 9;) {
+    char* end = nullptr;
+    const double value = std::strtod(at, &end);
+    if (end == at) {
+      if (at[std::strspn(at, " \t\r,")] != '\0') fail("'" + std::string(at) + "' is no number");
+      break;
+    }
+    if (!std::isfinite(value)) fail("not a finite number");
+    v.push_back(value);
+    at = end;
+  }
+  return v;
+}
+
+}  // namespace
+
 Trajectory read_tum(const std::string& file) {
   std::istringstream in(read_text(file));
   Trajectory path;
+  size_t columns = 0;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     const size_t first = line.find_first_not_of(" \t\r,");
     if (first == std::string::npos || line[first] == '#') continue;
     const auto fail = [&](const std::string& why) { throw Error(file + ":" + std::to_string(number) + ": " + why); };
-    double v[8];
-    const char* at = line.c_str();
-    for (double& value : v) {
-      char* end = nullptr;
-      value = std::strtod(at, &end);
-      if (end == at) fail("expected 't x y z qx qy qz qw' (TUM format)");
-      if (!std::isfinite(value)) fail("not a finite number");
-      at = end;
-    }
-    const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
-    if (std::abs(q.norm() - 1) > 0.01) fail("the quaternion's norm is " + std::to_string(q.norm()) + ", must be 1");
+    const std::vector<double> v = numbers_of(line, fail);
+    if (v.size() != 8 && v.size() != 4)
+      fail("expected 't x y z qx qy qz qw' (TUM format), or 't x y yaw' of a path in the plane");
+    if (columns != 0 && v.size() != columns) fail("the lines before have " + std::to_string(columns) + " numbers");
+    columns = v.size();
     if (!path.empty() && v[0] <= path.stamp_s.back()) fail("the stamp does not grow");
     Pose X = Pose::Identity();
-    X.linear() = q.normalized().toRotationMatrix();
-    X.translation() = Vec3(v[1], v[2], v[3]);
+    if (columns == 8) {
+      const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
+      if (std::abs(q.norm() - 1) > 0.01) fail("the quaternion's norm is " + std::to_string(q.norm()) + ", must be 1");
+      X.linear() = q.normalized().toRotationMatrix();
+      X.translation() = Vec3(v[1], v[2], v[3]);
+    } else {
+      X.linear() = Eigen::AngleAxisd(v[3], Vec3::UnitZ()).toRotationMatrix();
+      X.translation() = Vec3(v[1], v[2], 0);
+    }
     path.stamp_s.push_back(v[0]);
     path.X_WB.push_back(X);
   }

@@ -26,7 +26,8 @@ struct Trajectory {
 /// Distance driven up to each pose, metres, first 0. (n)
 std::vector<double> distance_along(const Trajectory& path);
 
-/// TUM format, "t x y z qx qy qz qw" a line, '#' comments. Errors name file and line.
+/// TUM format, "t x y z qx qy qz qw" a line, '#' comments; of a path in the plane also "t x y yaw". Errors name file and
+/// line.
 Trajectory read_tum(const std::string& file);
 void write_tum(const std::string& file, const Trajectory& path);
 

@@ -5,7 +5,10 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "cli/scenario.h"
+#include "cli/scores.h"
 #include "cli/stages.h"
+#include "eval/compare.h"
+#include "eval/explain.h"
 #include "eval/render.h"
 
 #include <nlohmann/json.hpp>
@@ -30,25 +33,22 @@ std::string out_of(const Common& common, const std::string& name) {
   return common.out.empty() ? "out/" + name : common.out;
 }
 
-// The numbers that a person looks at first.
-void print_scores(const Score& score, Console& console) {
-  for (const char* name :
-       {"trajectory.se3.ate_xy_rmse_m", "trajectory.se3.ate_z_rmse_m", "trajectory.open_loop.se3.ate_xy_rmse_m",
-        "closures.loops_closed", "closures.loops_true", "closures.wrong", "map.se3.mae_m", "map.local_5m.mae_m",
-        "grid.iou_free", "volume.observable_m3", "volume.mapped_m3", "volume.error_percent"}) {
-    const Metric* m = score.find(name);
-    if (!m) continue;
-    char line[160];
-    if (std::isfinite(m->value))
-      std::snprintf(line, sizeof line, "  %-42s %12.4g %s", name, m->value, m->unit.c_str());
-    else
-      std::snprintf(line, sizeof line, "  %-42s %12s", name, "-");
-    console.result(line);
-  }
-}
-
 ordered_json json_of_file(const std::string& file) {
   return ordered_json::parse(read_text(file));
+}
+
+// A run folder as `adit compare` sees it; without a score.json the run failed.
+ScoredRun scored_run(const std::string& out) {
+  if (!fs::exists(out + "/scenario.toml"))
+    throw Error(out + ": no scenario.toml in it; it must be the folder of a run");
+  ScoredRun run;
+  run.folder = out;
+  Scenario s = load_scenario(out + "/scenario.toml");
+  run.seed = s.seed;
+  s.seed = 0;
+  run.settings = resolved_toml(s);
+  if (fs::exists(out + "/score.json")) run.score = read_score(out + "/score.json");
+  return run;
 }
 
 // The scenario that a run folder was made from; the defaults where the folder has none.
@@ -168,24 +168,14 @@ int map_command(const std::string& recording, const Common& common, Console& con
   return 0;
 }
 
-int score_command(const std::string& world_dir, const std::string& truth_file, const std::string& map_dir,
-                  const Common& common, Console& console) {
-  Scenario s;
-  for (const std::string& a : common.assignments) set_field(fields(s), a);
-  const World world = load_world(world_dir);
-  const Truth truth = load_truth(truth_file);
-  if (truth.world != world_hash(world))
-    throw Error(truth_file + ": was recorded in another mine than " + world_dir + " holds; scores would mean nothing",
-                Fault::not_comparable);
-  const fs::path log = fs::path(truth_file).parent_path() / "log.h5";
-  const Rig nominal = fs::exists(log) ? load_log(log.string()).rig : truth.rig;
-  const Estimate estimate = load_estimate(map_dir);
-  const Score score = score_map(world, truth, nominal, estimate, s.score, console.progress());
-  const std::string file =
-      common.out.empty() ? (fs::path(map_dir).parent_path() / "score.json").string() : common.out + "/score.json";
-  write_score(file, score);
-  print_scores(score, console);
-  console.result("scores: " + file);
+int compare_command(const std::vector<std::string>& outs, const Common& common, Console& console) {
+  std::vector<ScoredRun> runs;
+  for (const std::string& out : outs) runs.push_back(scored_run(out));
+  const Comparison comparison = compare_runs(runs);
+  console.result(comparison_table(comparison, headline_metrics()));
+  const std::string file = (common.out.empty() ? "." : common.out) + "/comparison.json";
+  write_comparison(file, comparison);
+  console.result("comparison: " + file);
   if (console.wants_json()) console.json(json_of_file(file).dump());
   return 0;
 }
@@ -228,7 +218,8 @@ int list_command(const std::string& what, Console& console) {
   for (const auto& [kind, folder] : folders)
     if (what.empty() || what == kind) all[kind] = bundled_names(folder);
   if (what.empty() || what == "views") all["views"] = view_names();
-  if (all.empty()) throw Error("list " + what + ": there are scenarios, vehicles, rigs, lasers and views");
+  if (what.empty() || what == "metrics") all["metrics"] = defined_metrics();
+  if (all.empty()) throw Error("list " + what + ": there are scenarios, vehicles, rigs, lasers, views and metrics");
   for (const auto& [kind, names] : all.items()) {
     console.result(kind);
     for (const auto& name : names) {

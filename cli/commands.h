@@ -15,14 +15,24 @@ struct Common {
   std::vector<std::string> assignments;  // --set
 };
 
+/// What `adit score` is to judge, and against what; empty: not given.
+struct ScoreInput {
+  std::string world, truth;  // folder of the mine, truth.h5
+  std::string map;           // a folder as `adit map` writes it, or any of:
+  std::string trajectory, points, grid, surface;
+  double volume_m3 = -1;  // -1: not given
+  std::string relations;  // instead of world and truth, for a real log
+  std::string explain;    // a metric's name, instead of all
+};
+
 // Each command returns the exit code; bad input is thrown as Error.
 int run_command(const std::string& scenario, const Common& common, Console& console);
 int world_command(const std::string& scenario, const Common& common, Console& console);
 int check_command(const std::string& mesh_file, Console& console);
 int drive_command(const std::string& scenario, const std::string& world_dir, const Common& common, Console& console);
 int map_command(const std::string& recording, const Common& common, Console& console);
-int score_command(const std::string& world_dir, const std::string& truth_file, const std::string& map_dir,
-                  const Common& common, Console& console);
+int score_command(const ScoreInput& input, const Common& common, Console& console);
+int compare_command(const std::vector<std::string>& outs, const Common& common, Console& console);
 int report_command(const std::vector<std::string>& outs, const Common& common, Console& console);
 int render_command(const std::string& out, const std::string& view, const Common& common, Console& console);
 int list_command(const std::string& what, Console& console);

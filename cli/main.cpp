@@ -18,7 +18,8 @@ struct Words {
   adit::Common common;
   bool quiet = false, json = false;
   int threads = 0;
-  std::string first, second, world, truth, map, check;
+  std::string first, second, world, check;
+  adit::ScoreInput score;
   std::vector<std::string> outs;
 };
 
@@ -40,11 +41,27 @@ int dispatch(CLI::App& app, const Words& w) {
     return w.check.empty() ? world_command(w.first, w.common, console) : check_command(w.check, console);
   if (app.got_subcommand("drive")) return drive_command(w.first, w.world, w.common, console);
   if (app.got_subcommand("map")) return map_command(w.first, w.common, console);
-  if (app.got_subcommand("score")) return score_command(w.world, w.truth, w.map, w.common, console);
+  if (app.got_subcommand("score")) return score_command(w.score, w.common, console);
+  if (app.got_subcommand("compare")) return compare_command(w.outs, w.common, console);
   if (app.got_subcommand("report")) return report_command(w.outs, w.common, console);
   if (app.got_subcommand("render")) return render_command(w.first, w.second, w.common, console);
   if (app.got_subcommand("list")) return list_command(w.first, console);
   return help_command(w.first, console);
+}
+
+void add_score(CLI::App& app, Words& w) {
+  CLI::App* score = app.add_subcommand("score", "a map against the truth, ours or anybody's");
+  score->add_option("--world", w.score.world, "folder of the mine");
+  score->add_option("--truth", w.score.truth, "truth.h5 of the recording");
+  score->add_option("--map", w.score.map, "folder of a map as 'adit map' writes it");
+  score->add_option("--trajectory", w.score.trajectory, "somebody's path: TUM, or 't x y yaw' a line");
+  score->add_option("--points", w.score.points, "with it, its points: PLY");
+  score->add_option("--grid", w.score.grid, "its occupancy grid: the yaml of ROS map_server");
+  score->add_option("--surface", w.score.surface, "its closed surface: PLY");
+  score->add_option("--volume", w.score.volume_m3, "its own word on the volume, m3")->check(CLI::NonNegativeNumber);
+  score->add_option("--relations", w.score.relations, "of a real log: 't1 t2 x y z roll pitch yaw' a line");
+  score->add_option("--explain", w.score.explain, "define this metric, as 'adit list metrics' names it");
+  add_common(score, w, false);
 }
 
 void add_commands(CLI::App& app, Words& w) {
@@ -64,11 +81,10 @@ void add_commands(CLI::App& app, Words& w) {
   CLI::App* map = app.add_subcommand("map", "a map from a recording alone");
   map->add_option("recording", w.first, "log.h5")->required();
   add_common(map, w, false);
-  CLI::App* score = app.add_subcommand("score", "a map against the truth");
-  score->add_option("--world", w.world, "folder of the mine")->required();
-  score->add_option("--truth", w.truth, "truth.h5 of the recording")->required();
-  score->add_option("--map", w.map, "folder of the map")->required();
-  add_common(score, w, false);
+  add_score(app, w);
+  CLI::App* compare = app.add_subcommand("compare", "many runs: medians, intervals, paired differences, failures");
+  compare->add_option("out", w.outs, "folders of runs")->required();
+  add_common(compare, w, false);
   CLI::App* report = app.add_subcommand("report", "the page of one or more run folders");
   report->add_option("out", w.outs, "folders of runs")->required();
   add_common(report, w, false);
@@ -77,7 +93,7 @@ void add_commands(CLI::App& app, Words& w) {
   render->add_option("view", w.second, "one of 'adit list views'")->required();
   add_common(render, w, false);
   CLI::App* list = app.add_subcommand("list", "what is bundled");
-  list->add_option("what", w.first, "scenarios, vehicles, rigs, lasers or views");
+  list->add_option("what", w.first, "scenarios, vehicles, rigs, lasers, views or metrics");
   add_common(list, w, false);
   CLI::App* help = app.add_subcommand("help", "this text, or a topic");
   help->add_option("topic", w.first, "scenario");

@@ -300,10 +300,27 @@ std::vector<float> depths_m(const Camera& camera, int width, int height) {
 void darken_crevices(std::vector<Colour>& pixel, const std::vector<float>& depth, const Camera& camera, int width,
                      int height) {
   constexpr std::array<std::array<double, 2>, 4> ways = {{{1, 0}, {0.71, 0.71}, {0, 1}, {-0.71, 0.71}}};
+  struct Probe {
+    int i, j;
+    double radius_px;
+  };
+  std::vector<Probe> probes;
+  for (const double radius_px : {3.0, 8.0, 20.0})
+    for (const auto& way : ways)
+      probes.push_back({static_cast<int>(std::lround(radius_px * way[0])),
+                        static_cast<int>(std::lround(radius_px * way[1])), radius_px});
   const bool perspective = camera.fov_rad > 0;
+  const double px = (perspective ? 2 * std::tan(camera.fov_rad / 2) : camera.height_m) / height;
+  std::vector<double> flat(depth.size());  // linear in the picture over a plane
+  parallel_for(
+      depth.size(),
+      [&](size_t k) {
+        const double d = depth[k];
+        flat[k] = perspective ? 1 / d : -std::min(d, camera.far_m);
+      },
+      1 << 16);
   const auto measure = [&](int x, int y) {
-    const double d = depth[static_cast<size_t>(std::clamp(y, 0, height - 1)) * width + std::clamp(x, 0, width - 1)];
-    return perspective ? 1 / d : -std::min(d, camera.far_m);
+    return flat[static_cast<size_t>(std::clamp(y, 0, height - 1)) * width + std::clamp(x, 0, width - 1)];
   };
   parallel_for(
       static_cast<size_t>(height),
@@ -312,16 +329,13 @@ void darken_crevices(std::vector<Colour>& pixel, const std::vector<float>& depth
         for (int x = 0; x < width; ++x) {
           const double d = depth[row * width + x];
           if (!std::isfinite(d)) continue;
-          const double here = measure(x, y), scale = perspective ? d * d : 1;
-          const double px_m = perspective ? 2 * d * std::tan(camera.fov_rad / 2) / height : camera.height_m / height;
+          const double here = flat[row * width + x], scale = perspective ? d * d : 1;
+          const double px_m = perspective ? d * px : px;
           double shade = 0;
-          for (const double radius_px : {3.0, 8.0, 20.0})
-            for (const auto& way : ways) {
-              const int i = static_cast<int>(std::lround(radius_px * way[0])),
-                        j = static_cast<int>(std::lround(radius_px * way[1]));
-              const double deeper_m = ((measure(x + i, y + j) + measure(x - i, y - j)) / 2 - here) * scale;
-              shade += std::clamp(deeper_m / (radius_px * px_m) - 0.05, 0.0, 1.5) / 12;
-            }
+          for (const Probe& p : probes) {
+            const double deeper_m = ((measure(x + p.i, y + p.j) + measure(x - p.i, y - p.j)) / 2 - here) * scale;
+            shade += std::clamp(deeper_m / (p.radius_px * px_m) - 0.05, 0.0, 1.5) / 12;
+          }
           const double keep = 0.40 + 0.60 * std::exp(-1.6 * shade);
           Colour& c = pixel[row * width + x];
           c = {static_cast<std::uint8_t>(c.r * keep), static_cast<std::uint8_t>(c.g * keep),

@@ -262,6 +262,7 @@ Fields fields(ScoreSettings& s) {
   constexpr double most = 1e6;
   return {
       {"max_gap_s", &s.max_gap_s, "widest gap between true poses that is interpolated", 0, most},
+      {"max_diff_s", &s.max_diff_s, "between an end of a relation and the nearest pose", 0, most},
       {"rpe_m", &s.rpe_m, "distances of the relative pose error"},
       {"closure_m", &s.closure_m, "a measured closure is right within this distance", 0, most},
       {"closure_deg", &s.closure_deg, "and this angle", 0, 180},

@@ -77,7 +77,8 @@ struct Score {
 
 /// What counts as right. Keys below [score].
 struct ScoreSettings {
-  double max_gap_s = 0.5;  // between true poses that are interpolated
+  double max_gap_s = 0.5;    // between true poses that are interpolated
+  double max_diff_s = 0.13;  // of a relation's ends to the nearest pose
   std::vector<double> rpe_m = {1, 5, 10, 25, 50, 100};
   double closure_m = 0.5, closure_deg = 3;                // a measured closure is right within these
   double place_m = 3, place_deg = 45, revisit_m = 20;     // the same place; path between two visits of it

@@ -129,6 +129,47 @@ TEST_F(TinyRun, ScoringAndReportingAgainGivesTheSameBytes) {
   for (const auto& [file, bytes] : bytes_of(out_)) EXPECT_TRUE(before.at(file) == bytes) << file;
 }
 
+TEST_F(TinyRun, SomebodysPartsScoreAsTheWholeMapDoes) {
+  const std::string dir = fresh_folder("parts");
+  const std::string truth = " --world " + out_ + "/world --truth " + out_ + "/recording/truth.h5 --quiet -o " + dir;
+  const Answer said =
+      adit_says("score --trajectory " + out_ + "/map/trajectory.tum --points " + out_ + "/map/points.ply --grid " +
+                out_ + "/map/grid.yaml --surface " + out_ + "/map/surface.ply --volume 500" + truth);
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const nlohmann::json whole = nlohmann::json::parse(read_text(out_ + "/score.json")),
+                       parts = nlohmann::json::parse(read_text(dir + "/score.json"));
+  for (const char* block : {"map", "grid"}) EXPECT_EQ(parts[block], whole[block]) << block;
+  EXPECT_EQ(parts["trajectory"]["se3"], whole["trajectory"]["se3"]);
+  EXPECT_EQ(parts["volume"]["error_percent"], whole["volume"]["error_percent"]);
+  EXPECT_EQ(parts["volume"]["claimed_m3"]["value"], 500);
+  // A path alone is scored as a path; what was not given is null and says so.
+  ASSERT_EQ(adit_says("score --trajectory " + out_ + "/map/trajectory.tum" + truth).exit_code, 0);
+  const nlohmann::json path = nlohmann::json::parse(read_text(dir + "/score.json"));
+  EXPECT_EQ(path["trajectory"]["se3"], whole["trajectory"]["se3"]);
+  EXPECT_EQ(path["map"]["se3"]["mae_m"]["why"], "the map has no points");
+  fs::remove_all(dir);
+}
+
+TEST_F(TinyRun, RunsAreComparedBySeedAndAFailedOneCounts) {
+  const std::string dir = fresh_folder("compare"), failed = dir + "/failed";
+  write_text(failed + "/scenario.toml", read_text(out_ + "/scenario.toml") + "\n");
+  const Answer twice = adit_says("compare " + out_ + " " + out_ + " -o " + dir);
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_THAT(twice.err, HasSubstr("each may be given once"));
+  std::string text = read_text(failed + "/scenario.toml");
+  const size_t at = text.find("seed = ");
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, text.find('\n', at) - at, "seed = 99");
+  write_text(failed + "/scenario.toml", text);
+  const Answer said = adit_says("compare " + out_ + " " + failed + " -o " + dir);
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_THAT(said.out, HasSubstr("2 runs, 1 failed (seed 99)"));
+  const nlohmann::json j = nlohmann::json::parse(read_text(dir + "/comparison.json"));
+  EXPECT_EQ(j["groups"][0]["failed"][0], 99);
+  EXPECT_EQ(j["metrics"]["map.se3.mae_m"]["groups"][0]["n"], 1);
+  fs::remove_all(dir);
+}
+
 TEST_F(TinyRun, TheTruthOfAnotherMineIsNotComparable) {
   const std::string dir = fresh_folder("other_mine");
   ASSERT_EQ(adit_says("world " + tiny + " --seed 77 --quiet -o " + dir).exit_code, 0);

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/compare.h"
+
+#include "base/error.h"
+#include "base/rng.h"
+#include "eval/metric_list.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <sstream>
+
+namespace adit {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr int bootstrap_samples = 2000, least_for_interval = 5, most_exact = 16, drawn_patterns = 1 << 16;
+
+std::vector<std::string> lines_of(const std::string& settings) {
+  std::vector<std::string> lines;
+  std::istringstream text(settings);
+  std::string table;
+  for (std::string line; std::getline(text, line);) {
+    if (line.starts_with("["))
+      table = line.substr(1, line.find(']') - 1) + ".";
+    else if (line.find('=') != std::string::npos)
+      lines.push_back(table + line);
+  }
+  return lines;
+}
+
+// The settings of `other` that are not those of `first`, "key = value" each.
+std::string difference_of(const std::string& first, const std::string& other) {
+  const std::vector<std::string> known = lines_of(first);
+  const std::set<std::string> same(known.begin(), known.end());
+  std::string out;
+  for (const std::string& line : lines_of(other))
+    if (!same.contains(line)) out += (out.empty() ? "" : ", ") + line;
+  return out;
+}
+
+std::string truth_of(const Score& score) {
+  for (const auto& [key, value] : score.meta)
+    if (key == "truth_hash") return value;
+  return "";
+}
+
+// How far from what would be best: the number itself, or its distance from 0 for one that is good near 0.
+double badness(const Metric& m) {
+  const bool by_size = m.name.find("bias") != std::string::npos || m.name.ends_with("error_percent");
+  return m.better == Better::higher ? -m.value : by_size ? std::abs(m.value) : m.value;
+}
+
+using Runs = std::map<int, const ScoredRun*>;  // by seed
+
+ComparedMetric::Group group_of(const std::string& name, const Runs& runs, const Runs& first) {
+  ComparedMetric::Group out;
+  std::vector<double> values, differences;
+  double worst = -std::numeric_limits<double>::infinity();
+  for (const auto& [seed, run] : runs) {
+    if (!run->score) continue;
+    const Metric* m = run->score->find(name);
+    if (!m || !std::isfinite(m->value)) {
+      ++out.missing;
+      continue;
+    }
+    values.push_back(m->value);
+    if (badness(*m) > worst) worst = badness(*m), out.worst_seed = seed;
+    const auto pair = first.find(seed);
+    const Metric* other =
+        &runs != &first && pair != first.end() && pair->second->score ? pair->second->score->find(name) : nullptr;
+    if (other && std::isfinite(other->value)) differences.push_back(m->value - other->value);
+  }
+  if (std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); })) out.worst_seed.reset();
+  out.value = spread_of(values);
+  out.difference = spread_of(differences);
+  out.p = sign_flip_p(differences);
+  return out;
+}
+
+}  // namespace
+
+Spread spread_of(const std::vector<double>& values) {
+  Spread s;
+  s.n = static_cast<std::int64_t>(values.size());
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  s.median = quantile(sorted, 0.5);
+  s.low = s.high = none;
+  if (s.n < least_for_interval) return s;
+  std::vector<double> medians, sample(values.size());
+  for (int b = 0; b < bootstrap_samples; ++b) {
+    for (size_t k = 0; k < sample.size(); ++k) {
+      const double u = uniform(0, Draw::bootstrap, static_cast<std::uint64_t>(b), k);
+      sample[k] = sorted[static_cast<size_t>(u * static_cast<double>(sorted.size()))];
+    }
+    medians.push_back(quantile(sample, 0.5));
+  }
+  s.low = quantile(medians, 0.025);
+  s.high = quantile(medians, 0.975);
+  return s;
+}
+
+double sign_flip_p(const std::vector<double>& differences) {
+  const size_t n = differences.size();
+  if (n == 0) return 1;
+  double sum = 0, size = 0;
+  for (const double d : differences) sum += d, size += std::abs(d);
+  const bool exact = n <= most_exact;
+  const std::uint64_t patterns = exact ? std::uint64_t{1} << n : drawn_patterns;
+  std::uint64_t as_far = 0;
+  for (std::uint64_t k = 0; k < patterns; ++k) {
+    double flipped = 0;
+    for (size_t i = 0; i < n; ++i) {
+      const std::uint64_t word = exact ? k >> i : random_bits(1, Draw::bootstrap, k, i / 64) >> (i % 64);
+      flipped += word & 1 ? differences[i] : -differences[i];
+    }
+    as_far += std::abs(flipped) >= std::abs(sum) - 1e-12 * size;
+  }
+  // Drawn patterns: the one that was seen counts as one of them, so that p is never 0.
+  return exact ? static_cast<double>(as_far) / static_cast<double>(patterns)
+               : static_cast<double>(as_far + 1) / static_cast<double>(patterns + 1);
+}
+
+Comparison compare_runs(const std::vector<ScoredRun>& runs) {
+  Comparison out;
+  std::vector<std::string> settings;
+  std::vector<Runs> groups;
+  for (const ScoredRun& run : runs) {
+    const auto known = std::find(settings.begin(), settings.end(), run.settings);
+    const auto g = static_cast<size_t>(known - settings.begin());
+    if (known == settings.end()) {
+      settings.push_back(run.settings);
+      groups.emplace_back();
+      out.group.push_back({g == 0 ? "" : difference_of(settings[0], run.settings), {}, {}});
+    }
+    const auto [there, fresh] = groups[g].emplace(run.seed, &run);
+    if (!fresh)
+      throw Error(run.folder + " and " + there->second->folder + " are runs of the same settings and seed " +
+                  std::to_string(run.seed) + "; each may be given once");
+    if (run.score && groups[0].contains(run.seed) && groups[0][run.seed]->score &&
+        out.group[g].label.find("world.") == std::string::npos &&
+        truth_of(*run.score) != truth_of(*groups[0][run.seed]->score))
+      throw Error(run.folder + " was scored against another mine than " + groups[0][run.seed]->folder +
+                      " though their settings of the mine are the same: they come from different versions",
+                  Fault::not_comparable);
+  }
+  for (size_t g = 0; g < groups.size(); ++g)
+    for (const auto& [seed, run] : groups[g]) {
+      out.group[g].seed.push_back(seed);
+      if (!run->score) out.group[g].failed.push_back(seed);
+    }
+  std::set<std::string> named;
+  for (const ScoredRun& run : runs) {
+    if (!run.score) continue;
+    for (const Metric& m : run.score->metrics) {
+      if (!named.insert(m.name).second) continue;
+      ComparedMetric compared{m.name, m.unit, m.better, {}};
+      for (const Runs& group : groups) compared.group.push_back(group_of(m.name, group, groups[0]));
+      out.metric.push_back(std::move(compared));
+    }
+  }
+  return out;
+}
+
+}  // namespace adit

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "eval/score.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace adit {
+
+/// One run among many: what it was made from and how it scored.
+struct ScoredRun {
+  std::string folder;
+  std::string settings;  // its resolved scenario without the seed: what puts runs into one group
+  int seed = 0;
+  std::optional<Score> score;  // none: the run failed
+};
+
+/// A median with the interval that holds it with 95 %, where there are runs enough to say.
+struct Spread {
+  std::int64_t n = 0;
+  double median = 0, low = 0, high = 0;  // NaN where n = 0, n < 5
+};
+/// Percentile bootstrap of the median, 2000 samples at fixed addresses: the same every time.
+Spread spread_of(const std::vector<double>& values);
+/// Two-sided p of the hypothesis that the differences are as likely of either sign: the share of sign patterns whose
+/// mean is at least as far from 0. All 2^n of them up to n = 16, 65536 drawn ones beyond. 1 for none.
+double sign_flip_p(const std::vector<double>& differences);
+
+struct ComparedMetric {
+  std::string name, unit;
+  Better better;
+  struct Group {
+    Spread value;
+    std::int64_t missing = 0;       // runs with a score that lacks it
+    std::optional<int> worst_seed;  // none where all are equal
+    Spread difference;              // to the first group, over the seeds that both have
+    double p = 1;                   // of no difference
+  };
+  std::vector<Group> group;
+};
+
+/// Runs side by side.
+struct Comparison {
+  struct Group {
+    std::string label;      // what tells it from the first group: the lines of its settings that differ
+    std::vector<int> seed;  // rising
+    std::vector<int> failed;
+  };
+  std::vector<Group> group;
+  std::vector<ComparedMetric> metric;  // those of any run, in the order of a score
+};
+
+/// Groups runs by their settings, in the order in which they first appear; seeds are what pairs runs across groups.
+/// @throws Error where one group has a seed twice; Error (not_comparable) where groups that are paired by a seed were
+/// scored against different truths, unless the settings of the mine, the drive or the lasers differ
+Comparison compare_runs(const std::vector<ScoredRun>& runs);
+
+/// A table for people of the metrics named, those there are.
+std::string comparison_table(const Comparison& comparison, const std::vector<std::string>& names);
+/// comparison.json: groups and every metric.
+void write_comparison(const std::string& file, const Comparison& comparison);
+
+}  // namespace adit

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
+#include "eval/explain.h"
+#include "tests/eval/exact_case.h"
+
+#include <gtest/gtest.h>
+
+namespace adit {
+namespace {
+
+TEST(Explain, EveryMetricOfAScoreIsDefined) {
+  for (const Metric& m : score_of(tunnel_case()).metrics) EXPECT_NO_THROW(explain_metric(m.name)) << m.name;
+}
+
+TEST(Explain, TellsDefinitionAlignmentAndWhatItsBlockHolds) {
+  const std::string ate = explain_metric("trajectory.se3.ate_rmse_m");
+  EXPECT_NE(ate.find("distance between estimated and true position"), std::string::npos) << ate;
+  EXPECT_NE(ate.find("takes away: 6 degrees of freedom"), std::string::npos) << ate;
+  const std::string iou = explain_metric("iou");
+  EXPECT_NE(iou.find("volume.iou"), std::string::npos) << iou;
+  EXPECT_NE(iou.find("Judged on a domain"), std::string::npos) << iou;
+}
+
+TEST(Explain, AnUnknownNameIsAnErrorThatNamesNearOnes) {
+  try {
+    explain_metric("volume.overshoot");
+    FAIL() << "no error";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("volume.overbreak_m3"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace adit
