@@ -2,6 +2,7 @@
 #include "mapper/mapper.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 #include <utility>
 
@@ -78,8 +79,14 @@ Estimate make_map(const Log& log, const MapSettings& settings, const Progress& p
   estimate.closures = std::move(aligned.closures);
   estimate.notes.insert(estimate.notes.end(), aligned.notes.begin(), aligned.notes.end());
 
-  estimate.grid = map_grid(scans, mount, estimate.planar, settings.grid, settings.odometry.points, progress);
-  add_height(log, settings, progress, estimate);
+  // Height is mostly one factorisation on one thread: the grid is drawn beside it.
+  const std::vector<Pose2> planar = estimate.planar;
+  Grid grid;
+  parallel_for(2, [&](size_t task) {
+    if (task == 0) add_height(log, settings, progress, estimate);
+    if (task == 1) grid = map_grid(scans, mount, planar, settings.grid, settings.odometry.points);
+  });
+  estimate.grid = std::move(grid);
   return estimate;
 }
 
