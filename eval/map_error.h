@@ -47,9 +47,8 @@ LaidPoints lay(const MapPoints& points, const std::function<const Pose&(size_t)>
 
 /// bias_m, mae_m, rmse_m, p50_m, p95_m, p99_m, within_2cm / 5 / 10 / 20; precision_, recall_, f_ at thresholds;
 /// phantom_share, unobserved_share; by_label.<label>. the first ten and recall.
-///   A point farther than the threshold from the surface is wrong where its nearest patch was observable or where it
-///   lies in
-/// void that a fan crossed; elsewhere it is neither right nor wrong. A patch that was observable is recalled when a
+/// A point farther than the threshold from the surface is wrong where its nearest patch was observable or where it lies
+/// in void that a fan crossed; elsewhere it is neither right nor wrong. A patch that was observable is recalled when a
 /// point within the threshold of the surface has its foot on it.
 void add_map(const MetricList& list, const MapPoints& points, const LaidPoints& laid, const Mesh& mesh,
              const Patches& patches, const Observable& observable, const ScoreSettings& settings,
