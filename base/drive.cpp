@@ -13,6 +13,8 @@ std::string drive_end_name(DriveEnd end) {
       return "tipped";
     case DriveEnd::fell:
       return "fell";
+    case DriveEnd::blocked:
+      return "blocked";
   }
   return "unknown";
 }

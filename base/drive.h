@@ -8,13 +8,13 @@
 
 namespace adit {
 
-/// How a drive ended.
-enum class DriveEnd { finished, stuck, tipped, fell };
+/// How a drive ended: finished; its wheels do not get on; something stands in its way; over on its side or head; no floor under it.
+enum class DriveEnd { finished, stuck, tipped, fell, blocked };
 std::string drive_end_name(DriveEnd end);
 
 /// What a vehicle truly did.
 struct Drive {
-  Route route;
+  Route route;      // planned; for a drive by commands the line that was driven
   Trajectory path;  // X_WB, dense enough to interpolate for the instant of each beam (120 Hz or more)
   DriveEnd end = DriveEnd::finished;
   std::string cause;    // one sentence, with place and time; empty when finished

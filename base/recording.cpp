@@ -174,8 +174,8 @@ Drive load_drive(const H5Reader& in) {
   drive.path.stamp_s = in.array<double>("/path/stamp_s", rows);
   drive.path.X_WB = poses_of(in.array<double>("/path/X_WB", {rows[0], 3, 4}));
   const std::int64_t end = in.integer("/path", "end");
-  if (end < 0 || end > static_cast<std::int64_t>(DriveEnd::fell))
-    throw Error(in.file() + ": attribute 'end' at /path must be one of 0 to 3");
+  if (end < 0 || end > static_cast<std::int64_t>(DriveEnd::blocked))
+    throw Error(in.file() + ": attribute 'end' at /path must be one of 0 to 4");
   drive.end = static_cast<DriveEnd>(end);
   drive.cause = in.text("/path", "cause");
   drive.driven_m = in.number("/path", "driven_m");

@@ -31,6 +31,7 @@ enum class Draw : std::uint32_t {
   match_sample,
   eval_sample,
   bootstrap,
+  ground_relief,
 };
 
 /// Random numbers have addresses, not an order: the same (seed, draw, i, j) always gives the same number.

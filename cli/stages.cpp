@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "eval/trouble.h"
 
 #include <nlohmann/json.hpp>
 
@@ -89,13 +90,17 @@ Stages::Driven Stages::drive(const Scenario& s, const World& world) {
     write_text(out_ + "/scenario.toml", resolved_toml(s));
     save_log(out_ + "/recording/log.h5", driven.recording.log);
     save_truth(out_ + "/recording/truth.h5", driven.recording.truth);
-    forget({"map", "score.json", "report"});
+    forget({"recording/trouble.png", "map", "score.json", "report"});
+    if (driven.exit_code != 0)
+      write_png(out_ + "/recording/trouble.png", trouble_picture(world, driven.recording.truth.drive, vehicle.hull));
   });
   const Drive& d = driven.recording.truth.drive;
   const double minutes = d.path.empty() ? 0 : (d.path.stamp_s.back() - d.path.stamp_s.front()) / 60;
   console_.note("  drove " + with_unit(d.driven_m, "m", 0) + " of " + with_unit(d.route.length_m, "m", 0) + " in " +
                 with_unit(minutes, "min", 1));
-  if (driven.exit_code != 0) console_.note("  the drive ended early (" + drive_end_name(d.end) + "): " + d.cause);
+  if (driven.exit_code != 0)
+    console_.note("  the drive ended early (" + drive_end_name(d.end) + "): " + d.cause + "; see " + out_ +
+                  "/recording/trouble.png");
   return driven;
 }
 

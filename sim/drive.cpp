@@ -1,38 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
+#include "sim/autopilot.h"
 #include "sim/follower.h"
 #include "sim/ground.h"
 #include "sim/physics.h"
 #include "sim/pusher.h"
+#include "sim/relief.h"
+#include "sim/remote.h"
 #include "sim/sim.h"
+#include "sim/watch.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+#include <optional>
+#include <variant>
 
 namespace adit {
 namespace {
 
 constexpr double lookahead_m = 0.9;
-constexpr double settle_s = 5;    // longest time to come to rest before the drive
-constexpr double patience_s = 5;  // without moving on in it, a vehicle is stuck
-constexpr double turning_s = 30;  // nor does it take longer to turn on the spot
-constexpr double headway_m = 0.1;
-constexpr double stray_m = 1.5;   // off its route, a vehicle is lost
-constexpr double upright = 0.5;   // cosine of the tilt at which it has tipped over
-constexpr double fall_mps = 1.2;  // no bump that is rolled over lets it down so fast
-constexpr double still = 5e-3;    // m/s and rad/s
+constexpr double settle_s = 5;  // longest time to come to rest before the drive
+constexpr double still = 5e-3;  // m/s and rad/s
 constexpr double still_for_s = 0.2;
-
-std::string say(const char* format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
+constexpr double line_m = 0.25;  // between points of the line that was driven
 
 void check(const DriveSettings& settings) {
   if (settings.step_hz % settings.sample_hz != 0)
@@ -54,18 +44,43 @@ void check_width(const World& world, const Route& route, const Vehicle& vehicle)
   }
 }
 
+// In a mine with ribs a point off the floor is in the rock.
+void check_line(const World& world, const Floor& floor, const Route& route) {
+  if (std::find(world.mesh.label.begin(), world.mesh.label.end(), Label::rib) == world.mesh.label.end()) return;
+  for (size_t i = 1; i < route.line.size(); ++i)  // the first point is where the vehicle has to stand
+    if (!floor.height_m(route.line[i]))
+      throw Error(say("route: point %zu at (%.2f, %.2f) m lies in the rock; a route stays in the passages", i,
+                      route.line[i].x(), route.line[i].y()));
+}
+
+FloorKind floor_kind(const std::string& name) {
+  return name == "track" ? FloorKind::track : name == "rubble" ? FloorKind::rubble : FloorKind::smooth;
+}
+
+using Driver = std::variant<Pusher, Autopilot, Remote>;
+
+Driver make_driver(const DriveSettings& settings, const Vehicle& vehicle, std::uint64_t seed, double length_m) {
+  if (!settings.commands.empty()) return Remote(read_commands(settings.commands), vehicle);
+  if (vehicle.drivetrain == Drivetrain::skid_steer) return Autopilot(settings, vehicle.motors, length_m);
+  return Pusher(settings, seed, length_m);
+}
+
 // The vehicle while it drives: what is constant by reference, what changes by value.
 class Run {
  public:
   Run(const World& world, const Route& route, const Vehicle& vehicle, const DriveSettings& settings, std::uint64_t seed)
-      : world_(world),
-        vehicle_(vehicle),
+      : vehicle_(vehicle),
         settings_(settings),
         step_s_(1.0 / settings.step_hz),
+        floor_(world.mesh),
         follower_(route),
-        pusher_(settings, seed, follower_.length_m()),
-        start_(start(world, vehicle, follower_)),
-        physics_(world.mesh, vehicle, start_, step_s_) {
+        driver_(make_driver(settings, vehicle, seed, follower_.length_m())),
+        watch_(world, floor_, vehicle) {
+    const FloorKind kind = floor_kind(settings.ground);
+    if (kind != FloorKind::smooth) relief_.emplace(world, floor_, kind, seed);
+    start_ = start();
+    if (by_route()) check_line(world, floor_, route);
+    physics_.emplace(world.mesh, vehicle, start_, step_s_, relief_ ? &*relief_ : nullptr);
     drive_.route = route;
     settle();
   }
@@ -75,25 +90,32 @@ class Run {
       const double t_s = static_cast<double>(k) * step_s_;
       if (k % (settings_.step_hz / settings_.sample_hz) == 0) record(t_s);
       if (k % settings_.step_hz == 0) progress("drive", drive_.driven_m, follower_.length_m());
-      if (pusher_.done(t_s) || went_wrong(t_s)) break;
+      if (std::visit([&](const auto& driver) { return driver.done(t_s); }, driver_) || went_wrong(t_s)) break;
       step(t_s);
     }
-    progress("drive", drive_.driven_m, follower_.length_m());
+    if (!by_route()) keep_line();
+    progress("drive", drive_.driven_m, drive_.route.length_m);
     return std::move(drive_);
   }
 
  private:
-  static Pose start(const World& world, const Vehicle& vehicle, const Follower& follower) {
-    const Vec2 ahead = follower.point(std::min(0.5, follower.length_m())) - follower.point(0);
-    return stand_on(floor_of(world), vehicle, follower.point(0), std::atan2(ahead.y(), ahead.x()));
+  bool by_route() const { return settings_.commands.empty(); }
+
+  Pose start() const {
+    const Vec2 ahead = follower_.point(std::min(0.5, follower_.length_m())) - follower_.point(0);
+    const GroundHeight on_relief = [&](const Vec2& p_W, double radius_m) {
+      return relief_->rest_height_m(p_W, radius_m);
+    };
+    return stand_on(relief_ ? on_relief : height_of(floor_), vehicle_, follower_.point(0),
+                    std::atan2(ahead.y(), ahead.x()));
   }
 
   // Comes to rest on its tyres before the clock starts.
   void settle() {
-    motion_ = physics_.motion();
+    motion_ = physics_->motion();
     for (int k = 0; k < settle_s * settings_.step_hz && !resting_; ++k) {
-      physics_.step(push(vehicle_, {}, 0, motion_, step_s_, hands_));
-      motion_ = physics_.motion();
+      physics_->step(effort({}));
+      motion_ = physics_->motion();
       watch_rest(true);
     }
     const double moved = (motion_.X_WB.translation() - start_.translation()).norm();
@@ -110,26 +132,39 @@ class Run {
     if (!hold || resting_) return;
     still_s_ = motion_.v_W.norm() < still && motion_.omega_W.norm() < still ? still_s_ + step_s_ : 0;
     if (still_s_ < still_for_s) return;
-    physics_.rest();
-    motion_ = physics_.motion();
+    physics_->rest();
+    motion_ = physics_->motion();
     resting_ = true;
   }
 
   void look() {
+    if (!by_route()) return extend_line();
     const Pose2 X_WB = flatten(motion_.X_WB);
     guide_ = follower_.look(X_WB * Pose2{vehicle_.axle_x_m(), 0, 0}, lookahead_m);
     along_m_ = guide_.along_m - vehicle_.axle_x_m();  // of B's origin
     drive_.driven_m = std::clamp(along_m_, drive_.driven_m, follower_.length_m());
   }
 
+  Intent want(double t_s) {
+    if (auto* pusher = std::get_if<Pusher>(&driver_))
+      return pusher->want(t_s, step_s_, along_m_, guide_.curvature_ahead);
+    if (auto* autopilot = std::get_if<Autopilot>(&driver_)) return autopilot->want(t_s, step_s_, along_m_, guide_);
+    return std::get<Remote>(driver_).want(t_s, step_s_);
+  }
+
+  Effort effort(const Intent& intent) {
+    if (vehicle_.drivetrain == Drivetrain::skid_steer) return steer(vehicle_, intent, guide_.curvature);
+    return push(vehicle_, intent, guide_.curvature, motion_, step_s_, hands_);
+  }
+
   void step(double t_s) {
-    const Intent intent = pusher_.want(t_s, step_s_, along_m_, guide_.curvature_ahead);
-    if (intent.hold) moved_s_ = ahead_s_ = t_s;
+    const Intent intent = want(t_s);
+    if (intent.hold) watch_.stands(t_s);
     watch_rest(intent.hold);
     if (resting_) return;
-    effort_ = push(vehicle_, intent, guide_.curvature, motion_, step_s_, hands_);
-    physics_.step(effort_);
-    motion_ = physics_.motion();
+    effort_ = effort(intent);
+    physics_->step(effort_);
+    motion_ = physics_->motion();
     look();
   }
 
@@ -138,71 +173,49 @@ class Run {
     drive_.path.X_WB.push_back(motion_.X_WB);
   }
 
-  // It moves on along the route, or at least about the place: a turn on the spot has no headway.
-  void watch_headway(double t_s) {
-    if (along_m_ > best_m_ + headway_m) best_m_ = along_m_, ahead_s_ = t_s;
-    const Vec3& p = motion_.X_WB.translation();
-    if (ahead_s_ == t_s || (p - moved_to_).norm() > 2 * headway_m) moved_to_ = p, moved_s_ = t_s;
-  }
-
   bool went_wrong(double t_s) {
-    watch_headway(t_s);
-    const std::string& name = vehicle_.name;
-    if (motion_.X_WB.linear()(2, 2) < upright || motion_.v_W.z() < -fall_mps) {
-      if (over_floor()) return end(DriveEnd::tipped, name + " tipped over " + place(t_s));
-      return end(DriveEnd::fell, name + " fell " + place(t_s) + ": there is no floor under it");
-    }
-    if (std::abs(guide_.cross_m) > stray_m)
-      return end(DriveEnd::stuck, name + say(" strayed %.1f m off its route ", std::abs(guide_.cross_m)) + place(t_s));
-    if (t_s - moved_s_ > patience_s || t_s - ahead_s_ > turning_s)
-      return end(DriveEnd::stuck, name + " got stuck " + place(t_s) +
-                                      say(": pushed for %.0f s, at last with %.0f N, ", patience_s, effort_.force_N) +
-                                      touching());
-    return false;
-  }
-
-  bool over_floor() const {
-    const Vec3 p = motion_.X_WB.translation();
-    const std::optional<double> z = floor_height_m(floor_of(world_), p.head<2>());
-    return z && std::abs(*z - p.z()) < 1;
-  }
-
-  std::string place(double t_s) const {
-    const Vec3 p = motion_.X_WB.translation();
-    return say("at (%.2f, %.2f, %.2f) m after %.1f s, %.1f m along the route", p.x(), p.y(), p.z(), t_s,
-               drive_.driven_m);
-  }
-
-  std::string touching() const {
-    const std::optional<size_t> face = physics_.touched_face();
-    if (!face) return "its wheels do not get on";
-    std::string what = *face < world_.mesh.label.size() ? label_name(world_.mesh.label[*face]) : "rock";
-    if (*face < world_.mesh.part.size() && world_.mesh.part[*face] >= 0)
-      what += say(" of part %d", world_.mesh.part[*face]);
-    return "its frame against the " + what;
-  }
-
-  bool end(DriveEnd how, const std::string& cause) {
-    drive_.end = how;
-    drive_.cause = cause;
+    const Headway headway{t_s, along_m_, drive_.driven_m, guide_, by_route()};
+    const std::optional<Trouble> trouble = watch_.look(headway, motion_, effort_, *physics_);
+    if (!trouble) return false;
+    drive_.end = trouble->end;
+    drive_.cause = trouble->cause;
     return true;
   }
 
-  const World& world_;
+  // By commands there is no route to follow: what is driven becomes the route.
+  void extend_line() {
+    const Vec2 p = motion_.X_WB.translation().head<2>();
+    if (line_.empty()) line_.push_back(p);
+    const double on = (p - line_.back()).norm();
+    if (on < line_m) return;
+    line_.push_back(p);
+    drive_.driven_m += on;
+  }
+
+  void keep_line() {
+    const Vec2 p = motion_.X_WB.translation().head<2>();
+    drive_.driven_m += (p - line_.back()).norm();
+    line_.push_back(p);
+    drive_.route = {std::move(line_), {}, drive_.driven_m};
+  }
+
   const Vehicle& vehicle_;
   const DriveSettings& settings_;
   const double step_s_;
+  const Floor floor_;
   Follower follower_;
-  Pusher pusher_;
-  const Pose start_;
-  Physics physics_;
+  Driver driver_;
+  Watch watch_;
+  std::optional<Relief> relief_;
+  Pose start_ = Pose::Identity();
+  std::optional<Physics> physics_;
   Motion motion_;
   Guide guide_;
   Hands hands_;
   Effort effort_;
   Drive drive_;
-  double along_m_ = 0, best_m_ = 0, ahead_s_ = 0, moved_s_ = 0, still_s_ = 0;
-  Vec3 moved_to_ = Vec3::Zero();
+  double along_m_ = 0, still_s_ = 0;
+  std::vector<Vec2> line_;  // driven by commands
   bool resting_ = false;
 };
 
@@ -222,6 +235,14 @@ Fields fields(DriveSettings& s) {
           {"wobble_min_hz", &s.wobble_min_hz, "slowest sway", 0, 3},
           {"wobble_max_hz", &s.wobble_max_hz, "quickest sway", 0, 3},
           {"turn_max_deg_s", &s.turn_max_deg_s, "turn rate that bends are walked with at most", 1, 180},
+          {"robot_speed_mps", &s.robot_speed_mps, "of a vehicle that is not pushed", 0.02, 3},
+          {"scan_every_m", &s.scan_every_m, "way between a robot's stops for a scan, 0: it never stops", 0, 1e6},
+          {"scan_stop_s", &s.scan_stop_s, "how long it stands there", 0, 3600},
+          {"ground",
+           &s.ground,
+           "what the wheels meet on the floor: smooth is the mesh alone",
+           {"smooth", "track", "rubble"}},
+          {"commands", &s.commands, "CSV file time_s,speed_mps,turn_rate_rad_s to drive by, in place of the route"},
           {"step_hz", &s.step_hz, "steps of the physics a second", 120, 2000},
           {"sample_hz", &s.sample_hz, "poses of the path a second; divides step_hz", 120, 2000}};
 }

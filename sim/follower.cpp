@@ -64,6 +64,7 @@ Guide Follower::look(const Pose2& X_WA, double lookahead_m) {
   const Vec2 off = X_WA.position() - point(foot_m_);
   guide.cross_m = -std::sin(heading) * off.x() + std::cos(heading) * off.y();
   const Vec2 goal_A = X_WA.inverse() * goal(lookahead_m);
+  guide.bearing_rad = std::atan2(goal_A.y(), goal_A.x());
   const double arc = 2 * goal_A.y() / std::max(goal_A.squaredNorm(), 0.25 * lookahead_m * lookahead_m);
   // A goal behind is what a route that runs back on itself leaves: turn round, as tightly as may be.
   guide.curvature = goal_A.x() < 0 ? std::copysign(tightest, goal_A.y()) : std::clamp(arc, -tightest, tightest);

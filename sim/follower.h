@@ -13,6 +13,7 @@ struct Guide {
   double along_m = 0;          // of the route's length, at the foot of the axle; below 0 before its start
   double cross_m = 0;          // axle left of the route
   double curvature = 0;        // 1/m, to steer now; > 0 turns left
+  double bearing_rad = 0;      // of the point that is steered for, from straight ahead; > 0 on the left
   double curvature_ahead = 0;  // 1/m, greatest to be steered from here to a metre and a half ahead, without sign
 };
 

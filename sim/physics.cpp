@@ -7,18 +7,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 namespace adit {
 namespace {
 
 constexpr double gravity_mps2 = 9.81;
-constexpr double brake_Nm = 80;
 constexpr int rolling_iterations = 20, braked_iterations = 100;  // held wheels make a stiff chain from rock to frame
 constexpr double same_surface_m = 1e-3;  // a contact this far above a deeper one's plane is a surface of its own
 constexpr double sideways =
-    0.57;  // sine of the steepest side slope that a tyre stands on; beyond, a wheel has no flank
-constexpr int rock_group = 1, vehicle_group = 4;  // not 2: Bullet's static group shuns it
+    0.57;                      // sine of the steepest side slope that a tyre stands on; beyond, a wheel has no flank
+constexpr double steep = 0.5;  // upward part of a normal: what is steeper is no ground
+constexpr double relief_margin_m = 0.02;
+constexpr int rock_group = 1, vehicle_group = 4, loose_group = 8;  // not 2: Bullet's static group shuns it
 constexpr int wheel_index = 1, frame_index = 2;
 constexpr int part_faces = 1 << 20;  // Bullet's triangle index has 21 bits within a part
 
@@ -63,10 +65,18 @@ void keep_true_contacts(btPersistentManifold& manifold, const btVector3& axle) {
   }
 }
 
+// The face of the rock that a contact lies on.
+size_t face_of(const btPersistentManifold& m, const btManifoldPoint& p) {
+  const bool rock_is_b = m.getBody0()->getUserIndex() > 0;
+  const int part = rock_is_b ? p.m_partId1 : p.m_partId0, index = rock_is_b ? p.m_index1 : p.m_index0;
+  return static_cast<size_t>(part) * part_faces + static_cast<size_t>(index);
+}
+
 class Mine : public btDiscreteDynamicsWorld {
  public:
   using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
   const btRigidBody* frame = nullptr;
+  std::function<void()> lay_relief;  // in place of the floor's faces, where there is one
 
   void performDiscreteCollisionDetection() override {
     const auto each_wheel = [&](auto&& f) {
@@ -77,6 +87,7 @@ class Mine : public btDiscreteDynamicsWorld {
     };
     each_wheel([](btPersistentManifold& m) { m.clearManifold(); });
     btDiscreteDynamicsWorld::performDiscreteCollisionDetection();
+    if (lay_relief) lay_relief();
     const btVector3 axle = frame->getWorldTransform().getBasis().getColumn(1);
     each_wheel([&](btPersistentManifold& m) { keep_true_contacts(m, axle); });
   }
@@ -91,6 +102,7 @@ btVector3 bearing_moment(const btVector3& spin, double bearing_Nm) {
 
 struct Physics::Impl {
   const Vehicle& vehicle;
+  const Mesh& mesh;
   double step_s;
   btTriangleIndexVertexArray triangles;
   std::unique_ptr<btBvhTriangleMeshShape> rock_shape;
@@ -104,24 +116,33 @@ struct Physics::Impl {
   std::unique_ptr<btRigidBody> frame;
   std::vector<std::unique_ptr<btRigidBody>> wheels;
   std::vector<std::unique_ptr<btTypedConstraint>> joints;
+  std::vector<std::unique_ptr<btRigidBody>> blocks;
+  const Relief* relief;
+  std::vector<btPersistentManifold*> treads;  // (wheels) contacts with the relief
 
-  Impl(const Mesh& mesh, const Vehicle& vehicle_, const Pose& X_WB, double step) : vehicle(vehicle_), step_s(step) {
+  Impl(const Mesh& mesh_, const Vehicle& vehicle_, const Pose& X_WB, double step, const Relief* relief_,
+       const std::vector<Loose>& loose)
+      : vehicle(vehicle_), mesh(mesh_), step_s(step), relief(relief_) {
     world.setGravity({0, 0, -gravity_mps2});
-    world.getSolverInfo().m_solverMode |=
-        SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION;
-    add_rock(mesh);
+    add_rock();
     add_frame(X_WB);
     for (const Wheel& wheel : vehicle.wheels) add_wheel(wheel, X_WB);
+    for (const Loose& block : loose) add_loose(block);
     world.frame = frame.get();
+    if (!relief) return;
+    for (auto& wheel : wheels) treads.push_back(dispatcher.getNewManifold(wheel.get(), rock.get()));
+    world.lay_relief = [this] { lay_relief(); };
   }
   ~Impl() {
+    for (btPersistentManifold* tread : treads) dispatcher.releaseManifold(tread);
     for (auto& joint : joints) world.removeConstraint(joint.get());
+    for (auto& block : blocks) world.removeRigidBody(block.get());
     for (auto& wheel : wheels) world.removeRigidBody(wheel.get());
     world.removeRigidBody(frame.get());
     world.removeCollisionObject(rock.get());
   }
 
-  void add_rock(const Mesh& mesh) {
+  void add_rock() {
     const int faces = static_cast<int>(mesh.face.size());
     for (int first = 0; first < faces; first += part_faces) {
       btIndexedMesh part;
@@ -140,7 +161,7 @@ struct Physics::Impl {
     rock->setCollisionShape(rock_shape.get());
     rock->setFriction(1);  // the wheel's or the frame's coefficient counts
     rock->setRestitution(0);
-    world.addCollisionObject(rock.get(), rock_group, vehicle_group);
+    world.addCollisionObject(rock.get(), rock_group, vehicle_group | loose_group);
   }
 
   // Height of a wheel's middle above the level floor when the vehicle stands: radius less what its tyre gives way.
@@ -158,13 +179,14 @@ struct Physics::Impl {
   }
 
   btRigidBody* add_body(std::unique_ptr<btRigidBody>& slot, double mass, btCollisionShape* shape, const Vec3& inertia,
-                        const btTransform& at, double friction) {
+                        const btTransform& at, double friction, int group = vehicle_group,
+                        int against = rock_group | loose_group) {
     btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, shape, bt(inertia));
     info.m_startWorldTransform = at;
     info.m_friction = friction;
     slot = std::make_unique<btRigidBody>(info);
     slot->setActivationState(DISABLE_DEACTIVATION);
-    world.addRigidBody(slot.get(), vehicle_group, rock_group);
+    world.addRigidBody(slot.get(), group, against);
     return slot.get();
   }
 
@@ -194,11 +216,88 @@ struct Physics::Impl {
     body->setUserIndex(wheel_index);
     body->setContactStiffnessAndDamping(wheel.stiffness_N_m, wheel.damping_N_s_m);
     const btVector3 pivot = bt(Vec3(hub_B - vehicle.centre_of_mass_B)), none(0, 0, 0), axle(0, 1, 0);
-    if (wheel.kind == Wheel::fixed)
+    if (wheel.kind != Wheel::castor)
       joints.push_back(std::make_unique<btHingeConstraint>(*frame, *body, pivot, none, axle, axle));
     else
       joints.push_back(std::make_unique<btPoint2PointConstraint>(*frame, *body, pivot, none));
     world.addConstraint(joints.back().get(), true);
+  }
+
+  void add_loose(const Loose& block) {
+    auto shape = std::make_unique<btBoxShape>(bt(Vec3(0.5 * block.size_m)));
+    shape->setMargin(0.005);
+    btVector3 inertia;
+    shape->calculateLocalInertia(block.mass_kg, inertia);
+    blocks.emplace_back();
+    add_body(blocks.back(), block.mass_kg, shape.get(), vec(inertia), bt(block.X_WL), block.friction, loose_group,
+             rock_group | vehicle_group | loose_group);
+    shapes.push_back(std::move(shape));
+  }
+
+  // Takes the floor's faces off the wheels and puts the places there at which they touch the relief.
+  void lay_relief() {
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+      btPersistentManifold& m = *dispatcher.getManifoldByIndexInternal(i);
+      const bool with_rock = m.getBody0() == rock.get() || m.getBody1() == rock.get();
+      if (!with_rock || std::max(m.getBody0()->getUserIndex(), m.getBody1()->getUserIndex()) != wheel_index) continue;
+      for (int k = m.getNumContacts() - 1; k >= 0; --k) {
+        const size_t face = face_of(m, m.getContactPoint(k));
+        if (face >= mesh.label.size() || mesh.label[face] == Label::floor) m.removeContactPoint(k);
+      }
+    }
+    const btVector3 x = frame->getWorldTransform().getBasis().getColumn(0);
+    const double level = std::hypot(x.x(), x.y());
+    const Vec2 ahead = level > 1e-6 ? Vec2(Vec2(x.x(), x.y()) / level) : Vec2(1, 0);
+    for (size_t w = 0; w < wheels.size(); ++w) {
+      const Vec3 middle = vec(wheels[w]->getWorldTransform().getOrigin());
+      for (const Touch& touch : relief->touches(middle, vehicle.wheels[w].radius_m, ahead, relief_margin_m))
+        add_touch(w, touch);
+    }
+  }
+
+  // As btManifoldResult::addContactPoint makes a contact of two bodies.
+  void add_touch(size_t w, const Touch& touch) {
+    const btRigidBody& wheel = *wheels[w];
+    const btVector3 normal = bt(touch.normal_W), on_rock = bt(touch.p_W);
+    const btVector3 on_wheel = on_rock + normal * touch.distance_m;
+    btManifoldPoint p(wheel.getWorldTransform().inverse() * on_wheel, on_rock, normal, touch.distance_m);
+    p.m_positionWorldOnA = on_wheel;
+    p.m_positionWorldOnB = on_rock;
+    p.m_partId0 = p.m_index0 = p.m_partId1 = p.m_index1 = -1;
+    p.m_combinedFriction = vehicle.wheels[w].friction;
+    p.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+    p.m_combinedContactStiffness1 = vehicle.wheels[w].stiffness_N_m;
+    p.m_combinedContactDamping1 = vehicle.wheels[w].damping_N_s_m;
+    btPlaneSpace1(normal, p.m_lateralFrictionDir1, p.m_lateralFrictionDir2);
+    treads[w]->addManifoldPoint(p);
+  }
+
+  // Motors: one force against the slip as a whole, which lets scrubbing tyres turn as Coulomb's law has it. Hands, and all
+  // that stands: two forces along fixed axes, which hold without a tremble.
+  void choose_friction(bool brake) {
+    constexpr int fixed_axes = SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION;
+    int& mode = world.getSolverInfo().m_solverMode;
+    mode = vehicle.drivetrain == Drivetrain::skid_steer && !brake ? mode & ~fixed_axes : mode | fixed_axes;
+  }
+
+  // Of the rock's faces that a body of that kind is nearer to than margin_m, not counting those flatter than asked.
+  std::optional<size_t> deepest_face(int body, double margin_m, double normal_up_below) const {
+    std::optional<size_t> face;
+    double deepest = margin_m;
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+      const btPersistentManifold& m = *const_cast<btCollisionDispatcher&>(dispatcher).getManifoldByIndexInternal(i);
+      const btCollisionObject *a = m.getBody0(), *b = m.getBody1();
+      if ((a != rock.get() && b != rock.get()) || (a->getUserIndex() != body && b->getUserIndex() != body)) continue;
+      for (int k = 0; k < m.getNumContacts(); ++k) {
+        const btManifoldPoint& p = m.getContactPoint(k);
+        const size_t of_rock = face_of(m, p);
+        if (p.getDistance() >= deepest || of_rock >= mesh.face.size()) continue;
+        if (std::abs(p.m_normalWorldOnB.z()) > normal_up_below) continue;
+        deepest = p.getDistance();
+        face = of_rock;
+      }
+    }
+    return face;
   }
 
   void apply(const Effort& effort) {
@@ -208,22 +307,31 @@ struct Physics::Impl {
     for (size_t k = 0; k < wheels.size(); ++k) {
       const Wheel& wheel = vehicle.wheels[k];
       btVector3 spin = wheels[k]->getAngularVelocity() - frame->getAngularVelocity();
-      if (wheel.kind == Wheel::fixed) {
+      if (wheel.kind != Wheel::castor) {
         const btVector3 axle = R.getColumn(1);
         spin = axle * axle.dot(spin);
-        static_cast<btHingeConstraint&>(*joints[k]).enableAngularMotor(effort.brake, 0, brake_Nm * step_s);
+        auto& hinge = static_cast<btHingeConstraint&>(*joints[k]);
+        const bool motor = wheel.kind == Wheel::driven && !effort.brake;
+        const double tread = wheel.position_B.y() > 0 ? effort.left_mps : effort.right_mps;
+        // The motor's sense is that of the frame about the wheel. It bears the bearing's resistance itself: a moment of
+        // its own would turn the slip, and with it the friction, before the motor acts.
+        hinge.enableAngularMotor(effort.brake || motor, motor ? -tread / wheel.radius_m : 0,
+                                 (motor ? vehicle.motors.torque_max_Nm - wheel.bearing_Nm : wheel.brake_Nm) * step_s);
+        if (motor) continue;
       }
       wheels[k]->applyTorque(bearing_moment(spin, wheel.bearing_Nm));
     }
   }
 };
 
-Physics::Physics(const Mesh& rock, const Vehicle& vehicle, const Pose& X_WB, double step_s)
-    : impl_(std::make_unique<Impl>(rock, vehicle, X_WB, step_s)) {}
+Physics::Physics(const Mesh& rock, const Vehicle& vehicle, const Pose& X_WB, double step_s, const Relief* relief,
+                 const std::vector<Loose>& loose)
+    : impl_(std::make_unique<Impl>(rock, vehicle, X_WB, step_s, relief, loose)) {}
 Physics::~Physics() = default;
 
 void Physics::step(const Effort& effort) {
   impl_->apply(effort);
+  impl_->choose_friction(effort.brake);
   impl_->world.getSolverInfo().m_numIterations = effort.brake ? braked_iterations : rolling_iterations;
   impl_->world.stepSimulation(impl_->step_s, 0);  // exactly one step of this length
 }
@@ -238,6 +346,11 @@ Motion Physics::motion() const {
   return motion;
 }
 
+Motion Physics::loose_motion(size_t k) const {
+  const btRigidBody& block = *impl_->blocks[k];
+  return {pose(block.getWorldTransform()), vec(block.getLinearVelocity()), vec(block.getAngularVelocity())};
+}
+
 void Physics::rest() {
   const btVector3 none(0, 0, 0);
   const auto stop = [&](btRigidBody& body) {
@@ -249,32 +362,24 @@ void Physics::rest() {
 }
 
 double Physics::energy_J() const {
-  const auto of = [](const btRigidBody& body, double mass) {
+  const auto of = [](const btRigidBody& body) {
+    const double mass = 1 / body.getInvMass();
     const btVector3 omega_B = body.getWorldTransform().getBasis().transpose() * body.getAngularVelocity();
     return 0.5 * mass * body.getLinearVelocity().length2() + 0.5 * omega_B.dot(omega_B * body.getLocalInertia()) +
            mass * gravity_mps2 * body.getWorldTransform().getOrigin().z();
   };
-  double sum = of(*impl_->frame, impl_->vehicle.mass_kg);
-  for (size_t k = 0; k < impl_->wheels.size(); ++k) sum += of(*impl_->wheels[k], impl_->vehicle.wheels[k].mass_kg);
+  double sum = of(*impl_->frame);
+  for (const auto& wheel : impl_->wheels) sum += of(*wheel);
+  for (const auto& block : impl_->blocks) sum += of(*block);
   return sum;
 }
 
 std::optional<size_t> Physics::touched_face() const {
-  std::optional<size_t> face;
-  double deepest = 0.005;
-  for (int i = 0; i < impl_->dispatcher.getNumManifolds(); ++i) {
-    const btPersistentManifold& m = *impl_->dispatcher.getManifoldByIndexInternal(i);
-    const bool frame_is_a = m.getBody0()->getUserIndex() == frame_index;
-    if (!frame_is_a && m.getBody1()->getUserIndex() != frame_index) continue;
-    for (int k = 0; k < m.getNumContacts(); ++k) {
-      const btManifoldPoint& p = m.getContactPoint(k);
-      if (p.getDistance() >= deepest) continue;
-      deepest = p.getDistance();
-      const int part = frame_is_a ? p.m_partId1 : p.m_partId0, index = frame_is_a ? p.m_index1 : p.m_index0;
-      face = static_cast<size_t>(part) * part_faces + static_cast<size_t>(index);
-    }
-  }
-  return face;
+  return impl_->deepest_face(frame_index, 0.005, 2);
+}
+
+std::optional<size_t> Physics::face_at_wheel() const {
+  return impl_->deepest_face(wheel_index, 0.005, steep);
 }
 
 }  // namespace adit

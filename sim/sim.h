@@ -8,10 +8,12 @@
 #include "sim/vehicle.h"
 
 #include <cstdint>
+#include <string>
 
 namespace adit {
 
-/// How a person pushes: walking speed, stops, gait, wobble; and how finely the motion is computed.
+/// How a person pushes: walking speed, stops, gait, wobble; how a robot drives; what the ground is like; and how finely
+/// the motion is computed.
 struct DriveSettings {
   double speed_mps = 0.7, speed_sd_mps = 0.15;       // slow variation, over some 10 s
   double stop_gap_min_m = 30, stop_gap_max_m = 100;  // way between two stops
@@ -21,22 +23,26 @@ struct DriveSettings {
   double gait_hz = 1.8;
   double wobble_deg = 2;  // of the heading
   double wobble_min_hz = 0.5, wobble_max_hz = 1;
-  double turn_max_deg_s = 35;  // slows down in bends to keep to it
-  int step_hz = 240;           // of the physics
-  int sample_hz = 120;         // of the path; divides step_hz
+  double turn_max_deg_s = 35;     // slows down in bends to keep to it
+  double robot_speed_mps = 0.15;  // of a vehicle that is not pushed
+  double scan_every_m = 0;        // it stops so often for a scan; 0: never
+  double scan_stop_s = 15;        // and stands so long
+  std::string ground = "smooth";  // what lies on the mesh's floor: smooth (nothing) | track | rubble
+  std::string commands;           // CSV file of what a joystick asked for; empty: along the route
+  int step_hz = 240;              // of the physics
+  int sample_hz = 120;            // of the path; divides step_hz
 };
 Fields fields(DriveSettings& settings);
 
-/// Pushes a vehicle along a route.
+/// Drives a vehicle along a route, or by recorded commands from the route's first point.
 /// @param world    mesh closed, floor labelled; what is not floor or roof is rock to bump into as well
 /// @param route    at least two points and 1 m; the drive starts at rest on its first point, heading along it
-/// @return         the true path: B's pose from t = 0 s on, sample_hz times a second, up to the route's end or to where
-/// the
-///                 drive ended early. Being stuck, tipping over and falling are values: end, and cause with place and
-///                 time
+/// @return         the true path: B's pose from t = 0 s on, sample_hz times a second, up to the route's end, the last
+///                 command, or where the drive ended early. Being stuck, blocked, tipped over and falling are values:
+///                 end, and cause with place and time
 /// @throws Error   where the vehicle cannot stand at the start (no floor, rock in the way), where a passage of the
-/// route is
-///                 narrower than the vehicle, where settings exclude one another
+///                 route is narrower than the vehicle, where the route runs through rock, where settings exclude one
+///                 another, where the file of commands cannot be read
 /// The same arguments give the same bits; nothing depends on threads, addresses or earlier drives.
 /// The defaults are guesses at how a person pushes, held against the published path of the Bruceton cart (0.145 m per
 /// scan).

@@ -31,12 +31,12 @@ Vec2 arriving(const World& world, const Leg& leg) {
   return -inwards(world.passages[leg.passage], !leg.forward);
 }
 
-std::vector<char> two_core(const World& world) {
-  std::vector<char> in(world.passages.size(), 1);
+std::vector<char> two_core(const World& world, const std::vector<char>& allowed) {
+  std::vector<char> in = allowed.empty() ? std::vector<char>(world.passages.size(), 1) : allowed;
   std::vector<int> degree(world.junctions.size(), 0);
-  for (const Passage& p : world.passages) {
-    ++degree[p.a];
-    ++degree[p.b];
+  for (size_t i = 0; i < in.size(); ++i) {
+    degree[world.passages[i].a] += in[i];
+    degree[world.passages[i].b] += in[i];
   }
   for (bool changed = true; changed;) {
     changed = false;
@@ -50,6 +50,78 @@ std::vector<char> two_core(const World& world) {
     }
   }
   return in;
+}
+
+std::vector<char> reached(const World& world, int from, const std::vector<char>& allowed) {
+  const Ways ways(world, from, allowed);
+  std::vector<char> in(world.passages.size(), 0);
+  for (size_t i = 0; i < in.size(); ++i)
+    in[i] = (allowed.empty() || allowed[i]) && std::isfinite(ways.distance_m(world.passages[i].a));
+  return in;
+}
+
+namespace {
+
+// The leg with which a loop goes on when it keeps the rock on its left: the one farthest to the left.
+Leg leftmost(const World& world, const Leg& leg, const std::vector<char>& allowed) {
+  const Vec2 in = arriving(world, leg);
+  Leg best{leg.passage, !leg.forward};
+  double best_rad = -10;
+  const int at = to_of(world, leg);
+  for (const int id : world.junctions[at].passages) {
+    if (!allowed.empty() && !allowed[id]) continue;
+    for (const bool forward : {true, false}) {
+      const Leg next{id, forward};
+      if (from_of(world, next) != at || (id == leg.passage && forward != leg.forward)) continue;
+      const Vec2 out = leaving(world, next);
+      const double left_rad = std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out));
+      if (left_rad > best_rad) best_rad = left_rad, best = next;
+    }
+  }
+  return best;
+}
+
+// Twice the area to the left, and whether the point lies there.
+std::pair<double, bool> round_of(const World& world, const std::vector<Leg>& legs, const Vec2& p) {
+  std::vector<Vec2> line;
+  for (const Leg& leg : legs) {
+    const std::vector<Vec3>& centre = world.passages[leg.passage].centre_line;
+    for (size_t k = 0; k + 1 < centre.size(); ++k)
+      line.push_back(centre[leg.forward ? k : centre.size() - 1 - k].head<2>());
+  }
+  double area = 0;
+  bool inside = false;
+  for (size_t i = 0; i < line.size(); ++i) {
+    const Vec2 a = line[i], b = line[(i + 1) % line.size()];
+    area += a.x() * b.y() - a.y() * b.x();
+    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      inside = !inside;
+  }
+  return {area, inside};
+}
+
+}  // namespace
+
+std::vector<Leg> loop_about(const World& world, const Vec2& p_W, const std::vector<char>& allowed) {
+  const std::vector<char> core = two_core(world, allowed);
+  std::vector<Leg> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < core.size(); ++i) {
+    if (!core[i]) continue;
+    for (const bool forward : {true, false}) {
+      const Leg first{static_cast<int>(i), forward};
+      std::vector<Leg> legs{first};
+      for (;;) {
+        const Leg next = leftmost(world, legs.back(), core);
+        if (next.passage == first.passage && next.forward == first.forward) break;
+        legs.push_back(next);
+        if (legs.size() > 2 * core.size()) break;
+      }
+      const auto [area, inside] = round_of(world, legs, p_W);
+      if (inside && area > 0 && area < least) least = area, best = std::move(legs);
+    }
+  }
+  return best;
 }
 
 // Dijkstra; ties by junction id.

@@ -25,8 +25,16 @@ inline int to_of(const World& world, const Leg& leg) {
 Vec2 leaving(const World& world, const Leg& leg);
 Vec2 arriving(const World& world, const Leg& leg);
 
-/// Passages that are left when dead ends are taken off again and again: those on loops or between loops. (passages)
-std::vector<char> two_core(const World& world);
+/// Passages that are left of those allowed (empty: all) when dead ends are taken off again and again: those on loops or
+/// between loops. (passages)
+std::vector<char> two_core(const World& world, const std::vector<char>& allowed = {});
+
+/// Passages allowed (empty: all) that can be reached from a junction. (passages)
+std::vector<char> reached(const World& world, int from, const std::vector<char>& allowed);
+
+/// The smallest loop of allowed passages (empty: all) about a point in plan, counter-clockwise; empty where there is
+/// none.
+std::vector<Leg> loop_about(const World& world, const Vec2& p_W, const std::vector<char>& allowed);
 
 /// Shortest ways from one junction, over the passages that are allowed (empty: all).
 class Ways {
@@ -42,12 +50,14 @@ class Ways {
 };
 
 /// A closed tour from a junction over every allowed passage, with `twice_share` of its length on passages driven more
-/// than once and no U-turn where one can be avoided. The allowed passages must be connected, without dead ends. Method:
+/// than once and no U-turn where one can be avoided. The allowed passages must be connected. Method:
 /// Edmonds, Johnson, "Matching, Euler tours and the Chinese postman", Math. Prog. 1973, the matching by exchange.
 std::vector<Leg> tour(const World& world, const std::vector<char>& allowed, int start, double twice_share,
                       std::uint64_t seed);
 
-/// The line along legs, corners rounded; a leg driven straight back has a turn-about between.
-std::vector<Vec2> line_of(const World& world, const std::vector<Leg>& legs, double turn_radius_m);
+/// The line along legs, corners rounded; a leg driven straight back has a turn-about between, or, in place, goes back on
+/// its own line.
+std::vector<Vec2> line_of(const World& world, const std::vector<Leg>& legs, double turn_radius_m,
+                          bool turn_in_place = false);
 
 }  // namespace adit

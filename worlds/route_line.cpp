@@ -106,7 +106,7 @@ std::vector<Vec2> evenly(const std::vector<Vec2>& points) {
 
 }  // namespace
 
-std::vector<Vec2> line_of(const World& world, const std::vector<Leg>& legs, double turn_radius_m) {
+std::vector<Vec2> line_of(const World& world, const std::vector<Leg>& legs, double turn_radius_m, bool turn_in_place) {
   std::vector<Track> tracks;
   for (const Leg& leg : legs) tracks.push_back(track_of(world, leg));
   std::vector<Vec2> points{tracks.front().at(0)};
@@ -125,7 +125,12 @@ std::vector<Vec2> line_of(const World& world, const std::vector<Leg>& legs, doub
     const double end = track.length() - tangent - drift;
     for (double s = begin + fine_m; s < end; s += fine_m) points.push_back(track.at(s));
     points.push_back(track.at(end));
-    if (about) {
+    if (about && turn_in_place) {
+      points.push_back(track.at(end + drift));
+      for (double s = end + drift - fine_m; s > end; s -= fine_m) points.push_back(track.at(s));
+      points.push_back(track.at(end));
+      begin = tangent + drift;
+    } else if (about) {
       add_turn_about(track, end, end + drift, radius, points);
       begin = tangent + drift;
     } else if (!last) {

@@ -4,6 +4,7 @@
 #include "worlds/route_graph.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace adit {
@@ -54,8 +55,83 @@ std::vector<Leg> tour_both_ways(const World& world, const std::vector<char>& cor
   return first;
 }
 
+// Empty where none is to be avoided.
+std::vector<char> allowed_of(const World& world, const RouteSettings& s) {
+  if (s.avoid.empty()) return {};
+  std::vector<char> allowed(world.passages.size(), 1);
+  for (const int id : s.avoid) {
+    if (id < 0 || id >= static_cast<int>(world.passages.size()))
+      throw Error("route.avoid: there is no passage " + std::to_string(id) + "; this mine has 0 to " +
+                  std::to_string(world.passages.size() - 1));
+    allowed[id] = 0;
+  }
+  return allowed;
+}
+
+std::vector<Leg> way_to(const World& world, int from, int to, const std::vector<char>& allowed, const char* key) {
+  const Ways ways(world, from, allowed);
+  if (!std::isfinite(ways.distance_m(to)))
+    throw Error(std::string(key) + ": junction " + std::to_string(to) + " cannot be reached from " +
+                std::to_string(from) + " without the passages of route.avoid");
+  return ways.to(to);
+}
+
+// The greatest part that hangs together.
+std::vector<char> greatest_part(const World& world, const std::vector<char>& of) {
+  std::vector<char> best, seen(of.size(), 0);
+  double most = -1;
+  for (size_t i = 0; i < of.size(); ++i) {
+    if (!of[i] || seen[i]) continue;
+    std::vector<char> part = reached(world, world.passages[i].a, of);
+    double length = 0;
+    for (size_t k = 0; k < part.size(); ++k)
+      if (part[k]) seen[k] = 1, length += world.passages[k].length_m;
+    if (length > most) most = length, best = std::move(part);
+  }
+  return best;
+}
+
+std::vector<Leg> all_passages(const World& world, const RouteSettings& s, std::uint64_t seed) {
+  std::vector<char> allowed = allowed_of(world, s);
+  if (allowed.empty()) allowed.assign(world.passages.size(), 1);
+  if (s.start >= 0) check_junction(world, "route.start", s.start);
+  const std::vector<char> part = s.start >= 0 ? reached(world, s.start, allowed) : greatest_part(world, allowed);
+  const std::vector<int> among = junctions_of(world, part);
+  if (among.empty()) throw Error("route.avoid: leaves no passage to drive");
+  const int start = s.start >= 0 ? s.start : among[drawn_start(among.size(), seed)];
+  return tour(world, part, start, 0, seed);
+}
+
+std::vector<Leg> around(const World& world, const RouteSettings& s) {
+  if (s.pillars.empty()) throw Error("route.pillars: mode \"around\" needs one pillar at least");
+  const std::vector<char> allowed = allowed_of(world, s);
+  if (s.start >= 0) check_junction(world, "route.start", s.start);
+  std::vector<Leg> legs;
+  int at = s.start;
+  for (const int id : s.pillars) {
+    if (id < 0 || id >= static_cast<int>(world.pillars.size()))
+      throw Error("route.pillars: there is no pillar " + std::to_string(id) + "; this mine has 0 to " +
+                  std::to_string(static_cast<int>(world.pillars.size()) - 1));
+    std::vector<Leg> loop = loop_about(world, world.pillars[id].outline.front(), allowed);
+    if (loop.empty()) throw Error("route.pillars: no loop of passages leads about pillar " + std::to_string(id));
+    if (at >= 0) {
+      const Ways ways(world, at, allowed);
+      const auto nearer = [&](const Leg& a, const Leg& b) {
+        return ways.distance_m(from_of(world, a)) < ways.distance_m(from_of(world, b));
+      };
+      std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end(), nearer), loop.end());
+      const std::vector<Leg> way = way_to(world, at, from_of(world, loop.front()), allowed, "route.pillars");
+      legs.insert(legs.end(), way.begin(), way.end());
+    }
+    legs.insert(legs.end(), loop.begin(), loop.end());
+    at = to_of(world, legs.back());
+  }
+  return legs;
+}
+
 std::vector<Leg> loops(const World& world, const RouteSettings& s, std::uint64_t seed) {
-  const std::vector<char> core = two_core(world);
+  const std::vector<char> allowed = allowed_of(world, s);
+  const std::vector<char> core = allowed.empty() ? two_core(world) : greatest_part(world, two_core(world, allowed));
   const std::vector<int> among = junctions_of(world, core);
   if (among.empty())
     throw Error("route.mode = \"loops\": this mine has no loop; use \"there_and_back\" or \"waypoints\"");
@@ -67,10 +143,10 @@ std::vector<Leg> loops(const World& world, const RouteSettings& s, std::uint64_t
   if (s.start >= 0) {
     // From outside of the loops the shortest way in.
     check_junction(world, "route.start", s.start);
-    const Ways ways(world, s.start, {});
+    const Ways ways(world, s.start, allowed);
     const auto nearer = [&](int a, int b) { return ways.distance_m(a) < ways.distance_m(b); };
     starts = {*std::min_element(among.begin(), among.end(), nearer)};
-    legs = ways.to(starts[0]);
+    legs = way_to(world, s.start, starts[0], allowed, "route.start");
   }
   const std::vector<Leg> round = tour_both_ways(world, core, starts, s.twice_share, seed);
   legs.insert(legs.end(), round.begin(), round.end());
@@ -82,27 +158,32 @@ std::vector<Leg> by_waypoints(const World& world, const RouteSettings& s) {
   if (s.start >= 0) stops.insert(stops.begin(), s.start);
   if (stops.size() < 2) throw Error("route.waypoints: two junctions at least are needed for mode \"waypoints\"");
   for (int id : stops) check_junction(world, "route.waypoints", id);
+  const std::vector<char> allowed = allowed_of(world, s);
   std::vector<Leg> legs;
   for (size_t i = 1; i < stops.size(); ++i) {
     if (stops[i] == stops[i - 1])
       throw Error("route.waypoints: junction " + std::to_string(stops[i]) + " follows itself");
-    const std::vector<Leg> way = Ways(world, stops[i - 1], {}).to(stops[i]);
+    const std::vector<Leg> way = way_to(world, stops[i - 1], stops[i], allowed, "route.waypoints");
     legs.insert(legs.end(), way.begin(), way.end());
   }
   return legs;
 }
 
 std::vector<Leg> there_and_back(const World& world, const RouteSettings& s, std::uint64_t seed) {
-  std::vector<int> among = junctions_of(world, two_core(world));
+  const std::vector<char> allowed = allowed_of(world, s);
+  std::vector<int> among = junctions_of(world, two_core(world, allowed));
   if (among.empty())
     for (size_t j = 0; j < world.junctions.size(); ++j)
       if (world.junctions[j].degree() == 1) among.push_back(static_cast<int>(j));
   if (s.start >= 0) check_junction(world, "route.start", s.start);
   const int start = s.start >= 0 ? s.start : among[drawn_start(among.size(), seed)];
-  const Ways ways(world, start, {});
+  const Ways ways(world, start, allowed);
   int farthest = start;
   for (size_t j = 0; j < world.junctions.size(); ++j)
-    if (ways.distance_m(static_cast<int>(j)) > ways.distance_m(farthest)) farthest = static_cast<int>(j);
+    if (std::isfinite(ways.distance_m(static_cast<int>(j))) &&
+        ways.distance_m(static_cast<int>(j)) > ways.distance_m(farthest))
+      farthest = static_cast<int>(j);
+  if (farthest == start) throw Error("route.avoid: leaves no passage to drive from junction " + std::to_string(start));
   std::vector<Leg> legs = ways.to(farthest);
   for (size_t i = legs.size(); i > 0; --i) legs.push_back({legs[i - 1].passage, !legs[i - 1].forward});
   return legs;
@@ -113,10 +194,12 @@ std::vector<Leg> there_and_back(const World& world, const RouteSettings& s, std:
 Route plan_route(const World& world, const RouteSettings& s, std::uint64_t seed) {
   if (world.passages.empty()) throw Error("route: this mine has no passages to drive; its truth.json lists none");
   const std::vector<Leg> legs = s.mode == "loops"       ? loops(world, s, seed)
+                                : s.mode == "all"       ? all_passages(world, s, seed)
+                                : s.mode == "around"    ? around(world, s)
                                 : s.mode == "waypoints" ? by_waypoints(world, s)
                                                         : there_and_back(world, s, seed);
   Route route;
-  route.line = line_of(world, legs, s.turn_radius_m);
+  route.line = line_of(world, legs, s.turn_radius_m, s.turn == "in_place");
   for (const Leg& leg : legs) route.passages.push_back(leg.passage);
   for (size_t i = 1; i < route.line.size(); ++i) route.length_m += (route.line[i] - route.line[i - 1]).norm();
   return route;

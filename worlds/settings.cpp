@@ -63,9 +63,12 @@ Fields fields(WorldSettings& s) {
 
 Fields fields(RouteSettings& s) {
   return {
-      {"mode", &s.mode, "what the route is for", {"loops", "waypoints", "there_and_back"}},
+      {"mode", &s.mode, "what the route is for", {"loops", "all", "around", "waypoints", "there_and_back"}},
       {"start", &s.start, "junction id, -1: drawn among those on a loop", -1, 1e6},
       {"waypoints", &s.waypoints, "junction ids, for mode waypoints"},
+      {"pillars", &s.pillars, "pillar ids, for mode around"},
+      {"avoid", &s.avoid, "passage ids that are not driven"},
+      {"turn", &s.turn, "where the route runs back on itself: about an arc, or on the spot", {"arc", "in_place"}},
       {"twice_share", &s.twice_share, "least share of the way on passages driven twice or more, for mode loops", 0,
        0.9},
       {"turn_radius_m", &s.turn_radius_m, "of the arcs that round corners, where there is room", 0.8, 10},

@@ -69,9 +69,12 @@ World make_world(const WorldSettings& settings, std::uint64_t seed, const Progre
 
 /// How a vehicle goes through a mine: the keys of [route].
 struct RouteSettings {
-  std::string mode = "loops";   // loops | waypoints | there_and_back
+  std::string mode = "loops";   // loops | all | around | waypoints | there_and_back
   int start = -1;               // junction id; -1: drawn among those on a loop
   std::vector<int> waypoints;   // junction ids, for mode waypoints
+  std::vector<int> pillars;     // pillar ids, for mode around
+  std::vector<int> avoid;       // passage ids that are not driven: blocked, or full of things
+  std::string turn = "arc";     // where the route runs back on itself: arc | in_place
   double twice_share = 0.25;    // for mode loops: least share of the way on passages that are driven twice or more
   double turn_radius_m = 1.75;  // of the arcs that round corners, where there is room
 };
@@ -81,9 +84,13 @@ Fields fields(RouteSettings& settings);
 ///   loops           every passage that lies on a loop or between loops once at least, dead ends left out; twice_share
 ///   of
 ///                   the way is driven twice, some of it in the same and some in the opposite direction; no U-turn
+///   all             every passage once at least, dead ends too, by a short closed tour; as many U-turns as dead ends
+///   around          the loops about the pillars named, one after the other, joined by shortest ways
 ///   waypoints       shortest ways between the junctions given
 ///   there_and_back  from the start to the junction farthest from it, round, and back
-/// @throws Error for a junction that is not there, two waypoints that are equal, a mine without loops in mode loops
+/// A turn is an arc within the passage, or the line runs back on itself for a vehicle that turns on the spot. Passages
+/// to avoid are left out, with what cannot be reached without them.
+/// @throws Error for a junction, pillar or passage that is not there, two waypoints that are equal, a mine without loops in mode loops
 Route plan_route(const World& world, const RouteSettings& settings, std::uint64_t seed);
 
 /// What a mesh is found to be, by CGAL: nothing of it follows from how it was made.

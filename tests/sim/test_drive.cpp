@@ -158,23 +158,24 @@ TEST(Drive, SameSeedGivesTheSameBitsAndAnotherSeedDoesNot) {
   EXPECT_NE(a.path.X_WB.back().matrix(), c.path.X_WB.back().matrix());
 }
 
-TEST(Drive, IsStuckInFrontOfAWallAndSaysWhere) {
+TEST(Drive, IsBlockedByAWallAndSaysWhere) {
   World world = plain(level);
   add_wall(world, 6, -8, 8);
   const Drive d = drive(world, route_through({{0, 0}, {20, 0}}, 0), load_vehicle("cart"), brisk(), 12);
-  EXPECT_EQ(d.end, DriveEnd::stuck);
+  EXPECT_EQ(d.end, DriveEnd::blocked);
   EXPECT_NEAR(d.path.X_WB.back().translation().x(), 5.45, 0.05);  // the front wheels' treads are 0.55 m ahead
-  EXPECT_THAT(d.cause, HasSubstr("cart got stuck at (5.4"));
+  EXPECT_THAT(d.cause, HasSubstr("cart is blocked at (5.4"));
+  EXPECT_THAT(d.cause, HasSubstr("against the rib of part 7"));
   EXPECT_THAT(d.cause, testing::ContainsRegex("5.[45] m along the route"));
   EXPECT_NEAR(d.driven_m, 5.45, 0.05);
 }
 
-TEST(Drive, IsStuckWhereItsFrameDoesNotPassAndNamesTheRib) {
+TEST(Drive, IsBlockedWhereItsSideDoesNotPassAndNamesTheRib) {
   World world = plain(level);
   add_wall(world, 6, 0.2, 8);
   const Drive d = drive(world, route_through({{0, 0}, {20, 0}}, 0), load_vehicle("cart"), brisk(), 13);
-  EXPECT_EQ(d.end, DriveEnd::stuck);
-  EXPECT_THAT(d.cause, HasSubstr("along the route"));
+  EXPECT_EQ(d.end, DriveEnd::blocked);
+  EXPECT_THAT(d.cause, HasSubstr("the rib of part 7"));
 }
 
 TEST(Drive, FallsWhereTheFloorEndsAndSaysSo) {
@@ -204,6 +205,44 @@ TEST(Drive, AStartInRockIsAnError) {
   const World world = tunnel_world(20, 3, 2);
   EXPECT_THAT(error_of(world, route_through({{2, 1.4}, {15, 1.4}}, 0)), HasSubstr("would stand in rock"));
   EXPECT_THAT(error_of(world, route_through({{-4, 0}, {15, 0}}, 0)), HasSubstr("would stand in rock"));
+}
+
+TEST(Drive, ARouteThroughAPillarIsAnError) {
+  const World world = ring_world(18, 3.6, 2, 0.4);
+  EXPECT_THAT(error_of(world, route_through({{-7.2, -7.2}, {7.2, 7.2}}, 0)), HasSubstr("lies in the rock"));
+}
+
+DriveSettings scanning() {
+  DriveSettings settings;
+  settings.lead_in_s = 1;
+  settings.scan_every_m = 2;
+  settings.scan_stop_s = 6;
+  settings.robot_speed_mps = 0.3;
+  return settings;
+}
+
+TEST(Drive, ARobotStopsForAScanEveryFewMetresAndArrives) {
+  const Drive d = drive(plain(level), route_through({{0, 0}, {7, 0}}, 0), load_vehicle("groundhog"), scanning(), 1);
+  ASSERT_EQ(d.end, DriveEnd::finished) << d.cause;
+  for (const double stop_m : {2.0, 4.0, 6.0}) {
+    double stood = 0;
+    for (const Pose& X : d.path.X_WB) stood += std::abs(X.translation().x() - stop_m) < 0.03 ? 1.0 / 120 : 0;
+    EXPECT_NEAR(stood, 6, 1.2) << "at " << stop_m;  // and what it takes to brake and to start
+  }
+  EXPECT_LT(cross_track_m(d.path, d.route), 0.02);
+}
+
+TEST(Drive, ARobotTurnsOnTheSpotInADeadEndAndComesBack) {
+  const World tunnel = tunnel_world(12, 2.9, 1.6, 0.5);
+  const Route route = route_through({{2, 0}, {9.5, 0}, {2, 0}}, 0);
+  DriveSettings settings = scanning();
+  settings.scan_every_m = 0;
+  const Drive d = drive(tunnel, route, load_vehicle("groundhog"), settings, 1);
+  ASSERT_EQ(d.end, DriveEnd::finished) << d.cause;
+  EXPECT_LT(cross_track_m(d.path, route), 0.2);
+  EXPECT_LT((d.path.X_WB.back().translation() - d.path.X_WB.front().translation()).norm(), 0.2);
+  EXPECT_NEAR(std::abs(wrap_angle(flatten(d.path.X_WB.back()).yaw_rad - flatten(d.path.X_WB.front()).yaw_rad)),
+              std::numbers::pi, 0.1);
 }
 
 TEST(Drive, SettingsThatExcludeOneAnotherAreAnError) {

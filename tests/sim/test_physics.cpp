@@ -70,7 +70,7 @@ TEST(Physics, PitchOnARampIsItsSlope) {
   for (const double slope : {-10 * deg, 4 * deg, 10 * deg}) {
     const World world = ramp(slope);
     const Vehicle cart = load_vehicle("cart");
-    Physics physics(world.mesh, cart, stand_on(floor_of(world), cart, {0.2, 0.1}, 0), step_s);
+    Physics physics(world.mesh, cart, stand_on(height_of(Floor(world.mesh)), cart, {0.2, 0.1}, 0), step_s);
     const Pose X = settled(physics);
     // Load moves from the upper to the lower axle by m g sin(slope) h / wheelbase and presses two tyres of 60 kN/m in.
     const double sag = cart.mass_kg * g * std::sin(slope) * 0.45 / 0.8 / (2 * 60e3) * 2 / 0.8;
@@ -83,7 +83,7 @@ TEST(Physics, RollOnASideSlopeIsTheSlope) {
   const double slope = 6 * deg;
   const World world = terrain_world({-5, -5}, {5, 5}, 0.5, [=](const Vec2& p) { return p.y() * std::tan(slope); });
   const Vehicle cart = load_vehicle("cart");
-  Physics physics(world.mesh, cart, stand_on(floor_of(world), cart, {0, 0}, 0), step_s);
+  Physics physics(world.mesh, cart, stand_on(height_of(Floor(world.mesh)), cart, {0, 0}, 0), step_s);
   const Pose X = settled(physics);
   const double sag = cart.mass_kg * g * std::sin(slope) * 0.45 / 0.65 / (2 * 60e3) * 2 / 0.65;
   EXPECT_NEAR(yaw_pitch_roll(X.linear()).roll_rad, slope + sag, 0.05 * deg);
@@ -93,7 +93,7 @@ TEST(Physics, RollsDownARampWithTheAccelerationOfItsMassAndItsTurningWheels) {
   const double slope = 5 * deg;
   const World world = ramp(slope);
   const Vehicle cart = free_cart();
-  Physics physics(world.mesh, cart, stand_on(floor_of(world), cart, {20, 0}, std::numbers::pi), step_s);
+  Physics physics(world.mesh, cart, stand_on(height_of(Floor(world.mesh)), cart, {20, 0}, std::numbers::pi), step_s);
   settled(physics);
   physics.rest();
   const Vec3 start = physics.motion().X_WB.translation();
@@ -130,7 +130,7 @@ TEST(Physics, EnergyDoesNotGrowOnRoughGround) {
     return 0.02 * p.x() + 0.03 * std::sin(4 * p.x() + p.y()) + 0.02 * std::sin(7 * p.y() - 3 * p.x());
   });
   Vehicle cart = load_vehicle("cart");
-  Physics physics(world.mesh, cart, stand_on(floor_of(world), cart, {15, 0}, std::numbers::pi), step_s);
+  Physics physics(world.mesh, cart, stand_on(height_of(Floor(world.mesh)), cart, {15, 0}, std::numbers::pi), step_s);
   settled(physics);
   double least = physics.energy_J();
   for (int k = 0; k < 2400; ++k) {

@@ -15,9 +15,9 @@ namespace {
 
 using testing::HasSubstr;
 
-// The cart's file with one text replaced by another, as a file of its own.
-std::string error_of_changed(const std::string& from, const std::string& to) {
-  std::string text(bundled("sim/vehicles/cart.toml"));
+// A vehicle's file with one text replaced by another, as a file of its own.
+std::string error_of_changed(const std::string& from, const std::string& to, const std::string& name = "cart") {
+  std::string text(bundled("sim/vehicles/" + name + ".toml"));
   const size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
@@ -40,6 +40,24 @@ TEST(Vehicle, TheCartStandsOnTwoFixedWheelsAndTwoCastors) {
   EXPECT_DOUBLE_EQ(cart.axle_x_m(), -0.4);
   EXPECT_DOUBLE_EQ(cart.total_mass_kg(), 97);
   EXPECT_DOUBLE_EQ(cart.width_m(), 0.7);
+}
+
+TEST(Vehicle, GroundhogIsDrivenOnFourWheels) {
+  const Vehicle robot = load_vehicle("groundhog");
+  EXPECT_EQ(robot.drivetrain, Drivetrain::skid_steer);
+  EXPECT_DOUBLE_EQ(robot.total_mass_kg(), 700);
+  EXPECT_DOUBLE_EQ(robot.axle_x_m(), 0);
+  EXPECT_DOUBLE_EQ(robot.track_m(), 0.9);
+  EXPECT_DOUBLE_EQ(robot.width_m(), 1.1);
+}
+
+TEST(Vehicle, WhatDoesNotGoWithTheKindOfDriveIsNamed) {
+  EXPECT_THAT(error_of_changed("kind = \"castor\"", "kind = \"driven\""), HasSubstr("driven"));
+  EXPECT_THAT(error_of_changed("drive = \"pushed\"", "drive = \"skid_steer\""), HasSubstr("motors.torque_max_nm"));
+  EXPECT_THAT(error_of_changed("drive = \"pushed\"", "drive = \"tracked\""), HasSubstr("drive"));
+  EXPECT_THAT(error_of_changed("turn_gain = 3.09", "", "groundhog"), HasSubstr("motors.turn_gain"));
+  EXPECT_THAT(error_of_changed("drive = \"skid_steer\"", "drive = \"pushed\"", "groundhog"),
+              HasSubstr("push.handle_m"));
 }
 
 TEST(Vehicle, ThePusherStandsInTheRaysButDoesNotCollide) {

@@ -162,6 +162,76 @@ TEST(Router, ThereAndBackTurnsAboutWithinThePassage) {
   EXPECT_GT(least_radius(route.line), 0.9);
 }
 
+TEST(Router, AllDrivesEveryPassageDeadEndsTooAndComesBack) {
+  for (const World* world : {&mini(), &bruceton()}) {
+    RouteSettings s;
+    s.mode = "all";
+    const Route route = plan_route(*world, s, 4);
+    const std::vector<Leg> legs = legs_of(*world, route);
+    std::vector<int> times(world->passages.size(), 0);
+    double all = 0, driven = 0;
+    for (const Leg& leg : legs) ++times[leg.passage], driven += world->passages[leg.passage].length_m;
+    for (size_t i = 0; i < times.size(); ++i) {
+      EXPECT_GE(times[i], 1) << "passage " << i;
+      EXPECT_LE(times[i], 2) << "passage " << i;  // a shortest tour drives none three times
+      all += world->passages[i].length_m;
+    }
+    EXPECT_EQ(from_of(*world, legs.front()), to_of(*world, legs.back()));
+    EXPECT_LT(driven, 1.6 * all);
+  }
+}
+
+TEST(Router, TurnsInPlaceRunBackOnTheirOwnLine) {
+  const World tunnel = tunnel_world(60, 2.6, 2);
+  RouteSettings s;
+  s.mode = "there_and_back";
+  s.turn = "in_place";
+  s.start = 0;
+  const Route route = plan_route(tunnel, s, 1);
+  double farthest = 0;
+  for (const Vec2& p : route.line) {
+    EXPECT_LT(std::abs(p.y()), 1e-6);
+    farthest = std::max(farthest, p.x());
+  }
+  EXPECT_GT(farthest, 55);
+  EXPECT_LT((route.line.back() - route.line.front()).norm(), 1e-6);
+}
+
+TEST(Router, AroundDrivesTheLoopThatEnclosesThePillarAndNoOther) {
+  const World& world = mini();
+  ASSERT_GT(world.pillars.size(), 1u);
+  for (size_t id = 0; id < world.pillars.size(); ++id) {
+    RouteSettings s;
+    s.mode = "around";
+    s.pillars = {static_cast<int>(id)};
+    const Route route = plan_route(world, s, 1);
+    const std::vector<Leg> legs = legs_of(world, route);
+    EXPECT_EQ(from_of(world, legs.front()), to_of(world, legs.back()));
+    double winding[2] = {0, 0};  // about this pillar, about the next
+    for (size_t k = 0; k < 2; ++k) {
+      const Vec2 p = world.pillars[(id + k) % world.pillars.size()].outline.front();
+      for (size_t i = 0; i < route.line.size(); ++i) {
+        const Vec2 a = route.line[i] - p, b = route.line[(i + 1) % route.line.size()] - p;
+        winding[k] += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+      }
+    }
+    EXPECT_NEAR(winding[0], 2 * std::acos(-1.0), 1e-6) << "pillar " << id;
+    EXPECT_NEAR(winding[1], 0, 1e-6) << "pillar " << id;
+  }
+}
+
+TEST(Router, PassagesToAvoidAreNotDriven) {
+  for (const char* mode : {"loops", "all"})
+    for (const int passage : {0, 3}) {
+      RouteSettings s;
+      s.mode = mode;
+      s.avoid = {passage};
+      const Route route = plan_route(bruceton(), s, 2);
+      EXPECT_EQ(std::count(route.passages.begin(), route.passages.end(), passage), 0) << mode << " " << passage;
+      EXPECT_GT(route.length_m, 1000);
+    }
+}
+
 TEST(Router, WhatCannotBeDrivenIsSaidWithItsKey) {
   const World tunnel = tunnel_world(60, 4, 2);
   const auto error_of = [&](const RouteSettings& s) -> std::string {
@@ -183,6 +253,16 @@ TEST(Router, WhatCannotBeDrivenIsSaidWithItsKey) {
   s.mode = "there_and_back";
   s.start = 5;
   EXPECT_NE(error_of(s).find("route.start"), std::string::npos) << error_of(s);
+  s.start = 0;
+  s.avoid = {0};
+  EXPECT_NE(error_of(s).find("route.avoid"), std::string::npos) << error_of(s);
+  s.avoid = {9};
+  EXPECT_NE(error_of(s).find("no passage 9"), std::string::npos) << error_of(s);
+  s.avoid = {};
+  s.mode = "around";
+  EXPECT_NE(error_of(s).find("route.pillars"), std::string::npos) << error_of(s);
+  s.pillars = {4};
+  EXPECT_NE(error_of(s).find("no pillar 4"), std::string::npos) << error_of(s);
 }
 
 }  // namespace

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/relief.h"
+#include "sim/sim.h"
+#include "tests/sim/terrain.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace adit {
+namespace {
+
+constexpr double deg = std::numbers::pi / 180;
+
+// One straight passage along x with a floor as a levelled haulage way has it: waves of 1.5 to 4 m, 7 mm rms.
+World passage_world() {
+  World world = terrain_world({-4, -3}, {44, 3}, 0.25, [](const Vec2& p) {
+    return 0.01 * (std::sin(4.1 * p.x() + 1.1 * p.y()) + std::sin(2.3 * p.x() - 2.9 * p.y())) / std::sqrt(2.0);
+  });
+  world.junctions = {{Vec3(-3, 0, 0), {0}}, {Vec3(43, 0, 0), {0}}};
+  Passage passage{0, 1, {}, 4, 2, 46};
+  for (int x = -3; x <= 43; ++x) passage.centre_line.push_back({static_cast<double>(x), 0, 0});
+  world.passages = {passage};
+  return world;
+}
+
+World level_world(double height_m) {
+  return terrain_world({-2, -2}, {2, 2}, 0.5, [=](const Vec2&) { return height_m; });
+}
+
+TEST(Relief, ABallTouchesLevelGroundUnderItsMiddle) {
+  const World world = level_world(3.25);
+  const Floor floor(world.mesh);
+  const Relief relief(world, floor, FloorKind::smooth, 1);
+  for (const double gap : {-0.01, 0.0, 0.015}) {
+    const std::vector<Touch> touches = relief.touches({0.31, -0.17, 3.25 + 0.2 + gap}, 0.2, {1, 0}, 0.02);
+    ASSERT_FALSE(touches.empty());
+    for (const Touch& touch : touches) {
+      EXPECT_NEAR(touch.distance_m, gap, 1e-6);
+      EXPECT_NEAR(touch.normal_W.z(), 1, 1e-6);
+    }
+  }
+  EXPECT_TRUE(relief.touches({0, 0, 3.5}, 0.2, {1, 0}, 0.02).empty());
+  EXPECT_TRUE(relief.touches({9, 9, 3.4}, 0.2, {1, 0}, 0.02).empty());  // no floor there
+}
+
+TEST(Relief, ABallOnARampTouchesItWhereThePlumbToThePlaneFalls) {
+  const double slope = 12 * deg;
+  const World world = terrain_world({-2, -2}, {2, 2}, 0.5, [=](const Vec2& p) { return p.x() * std::tan(slope); });
+  const Floor floor(world.mesh);
+  const Relief relief(world, floor, FloorKind::smooth, 1);
+  const Vec3 normal(-std::sin(slope), 0, std::cos(slope)), foot(0.3, 0.1, 0.3 * std::tan(slope));
+  const std::vector<Touch> touches = relief.touches(foot + 0.24 * normal, 0.25, {1, 0}, 0.02);
+  const auto nearest =
+      std::min_element(touches.begin(), touches.end(), [](auto& a, auto& b) { return a.distance_m < b.distance_m; });
+  ASSERT_NE(nearest, touches.end());
+  EXPECT_NEAR(nearest->distance_m, -0.01, 1e-5);  // the search ends within 1 mm along the ground: 1e-6 / (2 * 0.24)
+  EXPECT_LT((nearest->normal_W - normal).norm(), 0.005);
+}
+
+TEST(Relief, RestsOnWhatLiesThere) {
+  const World world = passage_world();
+  const Floor floor(world.mesh);
+  const Relief relief(world, floor, FloorKind::rubble, 5);
+  for (int k = 0; k < 200; ++k) {
+    const Vec2 p(0.15 * k, 0.01 * k - 1);
+    const double at = *relief.height_m(p), rest = *relief.rest_height_m(p, 0.15);
+    EXPECT_GE(rest, at);
+    EXPECT_LT(rest - at, 0.15);
+  }
+}
+
+TEST(Relief, DoesNotDependOnWhatWasAskedBefore) {
+  const World world = passage_world();
+  const Floor floor(world.mesh);
+  const Relief one(world, floor, FloorKind::track, 5), other(world, floor, FloorKind::track, 5);
+  for (double x = 40; x > 0; x -= 0.37) EXPECT_TRUE(other.height_m({x, 0.3}).has_value());
+  for (double x = 0; x < 40; x += 0.05) ASSERT_EQ(one.height_m({x, 0.3}), other.height_m({x, 0.3})) << "x " << x;
+}
+
+TEST(Relief, SleepersAndRailsStandAsHighAsOldTrackDoesAndEndBeforeJunctions) {
+  const World world = passage_world();
+  const Floor floor(world.mesh);
+  const Relief relief(world, floor, FloorKind::track, 7);
+  double highest = 0;
+  for (double x = 5; x < 35; x += 0.01)
+    for (const double y : {-0.53, 0.0, 0.4})
+      highest = std::max(highest, *relief.height_m({x, y}) - *floor.height_m({x, y}));
+  EXPECT_GT(highest, 0.03);
+  EXPECT_LT(highest, 0.08);
+  for (double x = -2.9; x < -0.6; x += 0.03)  // planked within 2.5 m of the passage's end at x = -3
+    EXPECT_NEAR(*relief.height_m({x, 0}), *floor.height_m({x, 0}), 1e-3);
+}
+
+struct Swing {
+  double pitch_deg = 0, roll_deg = 0, heave_m = 0;  // sd about the mean over 8 s
+  double pitch_deg_s = 0, roll_deg_s = 0;           // rms rates over 33 ms
+  double pitch_peak_deg = 0, roll_peak_deg = 0;
+  double strongest_hz = 0;  // of pitch
+};
+
+double moving_mean(const std::vector<double>& sum, size_t i, size_t half) {
+  return (sum[i + half] - sum[i - half]) / (2 * static_cast<double>(half));
+}
+
+Swing swing_of(const Trajectory& path) {
+  constexpr size_t half = 480, lag = 4;
+  const size_t n = path.size();
+  std::vector<double> value[3], sum[3];
+  for (auto& s : sum) s.assign(n + 1, 0);
+  for (size_t i = 0; i < n; ++i) {
+    const YawPitchRoll a = yaw_pitch_roll(path.X_WB[i].linear());
+    const double now[3] = {a.pitch_rad / deg, a.roll_rad / deg, path.X_WB[i].translation().z()};
+    for (int k = 0; k < 3; ++k) value[k].push_back(now[k]), sum[k][i + 1] = sum[k][i] + now[k];
+  }
+  Swing swing;
+  double square[3] = {0, 0, 0}, rate[2] = {0, 0}, peak[2] = {0, 0};
+  double count = 0;
+  std::vector<double> pitch;
+  for (size_t i = half; i + half < n; ++i, ++count) {
+    for (int k = 0; k < 3; ++k) {
+      const double off = value[k][i] - moving_mean(sum[k], i, half);
+      square[k] += off * off;
+      if (k == 0) pitch.push_back(off);
+      if (k == 2) continue;
+      peak[k] = std::max(peak[k], std::abs(off));
+      const double r = (value[k][i] - value[k][i - lag]) * 120 / lag;
+      rate[k] += r * r;
+    }
+  }
+  swing.pitch_deg = std::sqrt(square[0] / count);
+  swing.roll_deg = std::sqrt(square[1] / count);
+  swing.heave_m = std::sqrt(square[2] / count);
+  swing.pitch_deg_s = std::sqrt(rate[0] / count);
+  swing.roll_deg_s = std::sqrt(rate[1] / count);
+  swing.pitch_peak_deg = peak[0];
+  swing.roll_peak_deg = peak[1];
+  double most = 0;
+  for (double hz = 0.3; hz < 4; hz += 0.02) {
+    double re = 0, im = 0;
+    for (size_t i = 0; i < pitch.size(); ++i) {
+      const double phase = 2 * std::numbers::pi * hz * static_cast<double>(i) / 120;
+      re += pitch[i] * std::cos(phase), im += pitch[i] * std::sin(phase);
+    }
+    if (re * re + im * im > most) most = re * re + im * im, swing.strongest_hz = hz;
+  }
+  return swing;
+}
+
+Swing swing_on(const std::string& ground) {
+  DriveSettings settings;
+  settings.ground = ground;
+  settings.lead_in_s = 0.5;
+  settings.stop_gap_min_m = settings.stop_gap_max_m = 1e4;
+  settings.speed_sd_mps = 0.02;
+  const Drive d = drive(passage_world(), route_through({{0, 0}, {39, 0}}, 0), load_vehicle("cart"), settings, 3);
+  EXPECT_EQ(d.end, DriveEnd::finished) << ground << ": " << d.cause;
+  return swing_of(d.path);
+}
+
+// The ranges that old mine floors are held to: smooth 0.5 to 1 degree sd and 3 to 10 degrees a second; track 2 degrees, 20
+// to 40; rubble 4 degrees, peaks of 10 to 15, to 60 degrees a second. A figure there is good to about a third.
+TEST(Relief, ASmoothFloorSwingsACartByHalfADegreeToOne) {
+  const Swing s = swing_on("smooth");
+  EXPECT_GT(s.pitch_deg, 0.4);
+  EXPECT_LT(s.pitch_deg, 1.1);
+  EXPECT_GT(s.roll_deg, 0.4);
+  EXPECT_LT(s.roll_deg, 1.1);
+  EXPECT_LT(s.pitch_deg_s, 10);
+  EXPECT_LT(s.roll_deg_s, 10);
+}
+
+TEST(Relief, TrackSwingsACartByTwoDegreesAtThePaceOfItsSleepers) {
+  const Swing s = swing_on("track");
+  EXPECT_GT(s.pitch_deg, 1.3);
+  EXPECT_LT(s.pitch_deg, 2.7);
+  EXPECT_GT(s.pitch_deg_s, 12);
+  EXPECT_LT(s.pitch_deg_s, 40);
+  EXPECT_GT(s.roll_deg, 0.6);
+  EXPECT_LT(s.roll_deg, 2.7);
+  EXPECT_NEAR(s.strongest_hz, 0.7 / 0.6, 0.15);  // 0.7 m/s over sleepers 0.6 m apart
+  EXPECT_LT(s.heave_m, 0.08);
+}
+
+TEST(Relief, RubbleSwingsACartByFourDegrees) {
+  const Swing s = swing_on("rubble");
+  EXPECT_GT(s.pitch_deg, 2.7);
+  EXPECT_LT(s.pitch_deg, 5.3);
+  EXPECT_GT(s.roll_deg, 2.7);
+  EXPECT_LT(s.roll_deg, 5.3);
+  EXPECT_GT(std::max(s.pitch_peak_deg, s.roll_peak_deg), 8);
+  EXPECT_LT(std::max(s.pitch_peak_deg, s.roll_peak_deg), 18);
+  EXPECT_LT(std::max(s.pitch_deg_s, s.roll_deg_s), 40);  // rms; peaks to about 60
+  EXPECT_GT(s.heave_m, 0.015);
+  EXPECT_LT(s.heave_m, 0.08);
+}
+
+}  // namespace
+}  // namespace adit
