@@ -2,10 +2,12 @@
 #include "base/mesh.h"
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/ply.h"
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace adit {
 namespace {
@@ -65,6 +67,9 @@ PlyElement face_element(const Mesh& mesh) {
   add_column(e, "label", PlyType::int32, mesh.label);
   add_column(e, "part", PlyType::int32, mesh.part);
   add_column(e, "reflectivity", PlyType::float32, mesh.reflectivity);
+  add_column(e, "passage", PlyType::int32, mesh.passage);
+  add_column(e, "material", PlyType::uint8, mesh.material);
+  add_column(e, "wetness", PlyType::float32, mesh.wetness);
   return e;
 }
 
@@ -92,6 +97,12 @@ void read_faces(const std::string& file, const PlyColumn& indices, Mesh& mesh, s
   }
 }
 
+Material material_of(const std::string& file, double value) {
+  for (const auto& [name, id] : material_ids())
+    if (value == id) return static_cast<Material>(id);
+  throw Error(file + ": a face has the unknown material " + std::to_string(static_cast<int>(value)));
+}
+
 Label label_of(const std::string& file, double value) {
   for (const auto& [name, id] : label_ids())
     if (value == id) return static_cast<Label>(id);
@@ -103,6 +114,12 @@ Label label_of(const std::string& file, double value) {
 const std::map<std::string, int>& label_ids() {
   static const std::map<std::string, int> ids{{"none", 0}, {"floor", 1},   {"roof", 2},  {"rib", 3},
                                               {"cap", 4},  {"vehicle", 5}, {"pusher", 6}};
+  return ids;
+}
+
+const std::map<std::string, int>& material_ids() {
+  static const std::map<std::string, int> ids{{"none", 0},     {"coal", 1},      {"shale", 2},
+                                              {"fireclay", 3}, {"rock_dust", 4}, {"block", 5}};
   return ids;
 }
 
@@ -150,11 +167,48 @@ size_t open_edges(const Mesh& mesh) {
   return open;
 }
 
+namespace {
+
+// Wavefront OBJ: lines "v x y z" and "f a b c ...", counted from 1 or, negative, back from the last vertex; texture
+// and normal behind a slash.
+Mesh read_obj(const std::string& file) {
+  std::istringstream in(read_text(file));
+  Mesh mesh;
+  size_t number = 0;
+  for (std::string text; std::getline(in, text);) {
+    ++number;
+    const auto fail = [&](const std::string& what) { throw Error(file + ":" + std::to_string(number) + ": " + what); };
+    std::istringstream words(text);
+    std::string word;
+    words >> word;
+    if (word == "v") {
+      Vec3 v;
+      if (!(words >> v.x() >> v.y() >> v.z()) || !v.allFinite()) fail("a vertex needs three finite numbers");
+      mesh.vertex.push_back(v);
+    } else if (word == "f") {
+      std::vector<std::uint32_t> corner;
+      while (words >> word) {
+        const long long n = std::strtoll(word.c_str(), nullptr, 10);
+        const long long at = n < 0 ? static_cast<long long>(mesh.vertex.size()) + n : n - 1;
+        if (n == 0 || at < 0 || at >= static_cast<long long>(mesh.vertex.size())) fail("no vertex '" + word + "'");
+        corner.push_back(static_cast<std::uint32_t>(at));
+      }
+      if (corner.size() < 3) fail("a face needs three corners");
+      for (size_t k = 1; k + 1 < corner.size(); ++k) mesh.face.push_back({corner[0], corner[k], corner[k + 1]});
+    }
+  }
+  if (mesh.face.empty()) throw Error(file + ": has no faces; a mesh is needed");
+  return mesh;
+}
+
+}  // namespace
+
 void write_mesh(const std::string& file, const Mesh& mesh) {
   write_ply(file, {{vertex_element(mesh), face_element(mesh)}});
 }
 
 Mesh read_mesh(const std::string& file) {
+  if (file.ends_with(".obj")) return read_obj(file);
   const Ply ply = read_ply(file);
   Mesh mesh;
   mesh.vertex = read_vertices(file, ply);
@@ -169,6 +223,12 @@ Mesh read_mesh(const std::string& file) {
     for (size_t row : row_of) mesh.part.push_back(static_cast<int>(c->value[row]));
   if (const PlyColumn* c = faces->find("reflectivity"); c && !c->list)
     for (size_t row : row_of) mesh.reflectivity.push_back(static_cast<float>(c->value[row]));
+  if (const PlyColumn* c = faces->find("passage"); c && !c->list)
+    for (size_t row : row_of) mesh.passage.push_back(static_cast<int>(c->value[row]));
+  if (const PlyColumn* c = faces->find("material"); c && !c->list)
+    for (size_t row : row_of) mesh.material.push_back(material_of(file, c->value[row]));
+  if (const PlyColumn* c = faces->find("wetness"); c && !c->list)
+    for (size_t row : row_of) mesh.wetness.push_back(static_cast<float>(c->value[row]));
   return mesh;
 }
 

@@ -16,6 +16,10 @@ enum class Label : std::uint8_t { none = 0, floor = 1, roof = 2, rib = 3, cap = 
 const std::map<std::string, int>& label_ids();
 std::string label_name(Label label);
 
+/// What a face's rock is, under its dust and water. The ids stand in mesh files and in truth.json.
+enum class Material : std::uint8_t { none = 0, coal = 1, shale = 2, fireclay = 3, rock_dust = 4, block = 5 };
+const std::map<std::string, int>& material_ids();
+
 /// An indexed triangle mesh in metres. Faces are counter-clockwise seen from outside of the enclosed volume: the
 /// enclosed volume of a mine is its void, so normals point into the rock.
 struct Mesh {
@@ -24,6 +28,9 @@ struct Mesh {
   std::vector<Label> label;                        // (m) or empty
   std::vector<int> part;            // (m) or empty: id of the passage (floor, roof) or pillar (rib); -1 none
   std::vector<float> reflectivity;  // (m) or empty: diffuse, at 905 nm, 0..1
+  std::vector<int> passage;         // (m) or empty: id of the passage that a face bounds
+  std::vector<Material> material;   // (m) or empty
+  std::vector<float> wetness;       // (m) or empty: 0 dry .. 1 wet through
 
   Vec3 corner(size_t f, int k) const { return vertex[face[f][k]]; }
   /// Unit normal, out of the enclosed volume.
@@ -38,10 +45,10 @@ double enclosed_volume(const Mesh& mesh);
 size_t open_edges(const Mesh& mesh);
 
 /// Binary little-endian PLY: double x y z; faces vertex_indices, and as present int label, int part, float
-/// reflectivity.
+/// reflectivity, int passage, uchar material, float wetness.
 void write_mesh(const std::string& file, const Mesh& mesh);
-/// Any PLY mesh, ascii or binary, float or double, triangles (polygons are fanned); label, part, reflectivity if
-/// present.
+/// Any PLY mesh, ascii or binary, float or double, triangles (polygons are fanned); what write_mesh writes of
+/// each face if present. A name that ends in .obj: Wavefront OBJ, vertices and faces alone.
 Mesh read_mesh(const std::string& file);
 /// Binary glTF, one primitive and material per label, y up as the format demands.
 void write_glb(const std::string& file, const Mesh& mesh);

@@ -77,6 +77,7 @@ std::vector<json> passages_of(const World& world) {
                    {"width_m", p.width_m},
                    {"height_m", p.height_m},
                    {"length_m", p.length_m},
+                   {"volume_m3", p.volume_m3},
                    {"centre_line", array_of(p.centre_line)}});
   }
   return all;
@@ -86,6 +87,26 @@ std::vector<json> pillars_of(const World& world) {
   std::vector<json> all;
   for (size_t i = 0; i < world.pillars.size(); ++i)
     all.push_back({{"id", i}, {"area_m2", world.pillars[i].area_m2}, {"outline", array_of(world.pillars[i].outline)}});
+  return all;
+}
+
+// Area of the faces of each material, with their mean reflectivity and wetness.
+json rocks_of(const Mesh& mesh) {
+  std::map<Material, std::array<double, 3>> sums;
+  for (size_t f = 0; f < mesh.material.size(); ++f) {
+    auto& [area, reflected, wet] = sums[mesh.material[f]];
+    const double a = mesh.area(f);
+    area += a;
+    if (!mesh.reflectivity.empty()) reflected += a * mesh.reflectivity[f];
+    if (!mesh.wetness.empty()) wet += a * mesh.wetness[f];
+  }
+  json all = json::object();
+  for (const auto& [name, id] : material_ids()) {
+    const auto found = sums.find(static_cast<Material>(id));
+    if (found == sums.end() || !(found->second[0] > 0)) continue;
+    const auto& [area, reflected, wet] = found->second;
+    all[name] = {{"id", id}, {"area_m2", area}, {"reflectivity_905nm", reflected / area}, {"wetness", wet / area}};
+  }
   return all;
 }
 
@@ -123,6 +144,9 @@ std::string truth_text(const World& world) {
       {"loops", json(n.loops).dump()},
       {"labels", json(label_ids()).dump()},
       {"materials", materials_of(world.mesh).dump()},
+      {"rocks", rocks_of(world.mesh).dump()},
+      {"cycles", json(cycle_basis(world)).dump()},
+      {"outline", array_of(world.outline).dump()},
       {"junctions", lines(junctions_of(world))},
       {"passages", lines(passages_of(world))},
       {"pillars", lines(pillars_of(world))},
@@ -135,7 +159,8 @@ std::string truth_text(const World& world) {
 
 Passage passage_of(const json& j) {
   Passage p{j.at("a").get<int>(),          j.at("b").get<int>(),           {},
-            j.at("width_m").get<double>(), j.at("height_m").get<double>(), j.at("length_m").get<double>()};
+            j.at("width_m").get<double>(), j.at("height_m").get<double>(), j.at("length_m").get<double>(),
+            j.value("volume_m3", 0.0)};
   for (const json& v : j.at("centre_line")) p.centre_line.push_back(vec3_of(v));
   return p;
 }
@@ -154,6 +179,8 @@ void read_truth(const json& j, World& world) {
     world.junctions.push_back({vec3_of(v.at("p_W")), v.at("passages").get<std::vector<int>>()});
   for (const json& v : j.at("passages")) world.passages.push_back(passage_of(v));
   for (const json& v : j.at("pillars")) world.pillars.push_back(pillar_of(v));
+  if (j.contains("outline"))
+    for (const json& v : j["outline"]) world.outline.push_back(vec2_of(v));
 }
 
 void check_graph(const std::string& file, const World& world) {
@@ -168,6 +195,48 @@ void check_graph(const std::string& file, const World& world) {
 }
 
 }  // namespace
+
+// Each passage that a tree from the lowest junction leaves out closes one cycle through the tree.
+std::vector<std::vector<int>> cycle_basis(const World& world) {
+  const size_t n = world.junctions.size();
+  std::vector<int> parent(n, -1), by(n, -1), depth(n, -1), order;
+  for (size_t root = 0; root < n; ++root) {
+    if (depth[root] >= 0) continue;
+    depth[root] = 0;
+    order.push_back(static_cast<int>(root));
+    for (size_t k = order.size() - 1; k < order.size(); ++k) {
+      for (int id : world.junctions[order[k]].passages) {
+        const Passage& p = world.passages[id];
+        const int next = p.a == order[k] ? p.b : p.a;
+        if (depth[next] >= 0) continue;
+        depth[next] = depth[order[k]] + 1;
+        parent[next] = order[k];
+        by[next] = id;
+        order.push_back(next);
+      }
+    }
+  }
+  std::vector<std::vector<int>> cycles;
+  for (size_t i = 0; i < world.passages.size(); ++i) {
+    int a = world.passages[i].a, b = world.passages[i].b;
+    if (by[a] == static_cast<int>(i) || by[b] == static_cast<int>(i)) continue;
+    std::vector<int> down, up;  // from b back to where both ways meet, and from a
+    while (a != b) {
+      if (depth[b] >= depth[a]) {
+        down.push_back(by[b]);
+        b = parent[b];
+      } else {
+        up.push_back(by[a]);
+        a = parent[a];
+      }
+    }
+    std::vector<int> cycle{static_cast<int>(i)};
+    cycle.insert(cycle.end(), down.begin(), down.end());
+    cycle.insert(cycle.end(), up.rbegin(), up.rend());
+    cycles.push_back(std::move(cycle));
+  }
+  return cycles;
+}
 
 Mesh floor_of(const World& world) {
   const Mesh& mesh = world.mesh;
@@ -201,6 +270,7 @@ std::string world_hash(const World& world) {
   for (Label l : world.mesh.label) digest.add(static_cast<std::uint64_t>(l));
   for (int p : world.mesh.part) digest.add(static_cast<std::uint64_t>(static_cast<std::int64_t>(p)));
   for (float r : world.mesh.reflectivity) digest.add(static_cast<double>(r));
+  for (float w : world.mesh.wetness) digest.add(static_cast<double>(w));
   const WorldNumbers& n = world.numbers;
   for (double v : {n.volume_m3, n.floor_area_m2, n.extraction_ratio}) digest.add(v);
   digest.add(static_cast<std::uint64_t>(n.loops));

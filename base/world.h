@@ -23,6 +23,7 @@ struct Passage {
   std::vector<Vec3> centre_line;  // on the floor, from a to b, both included, about every metre
   double width_m, height_m;       // means over the passage
   double length_m;                // along the centre line, in plan
+  double volume_m3 = 0;           // of its share of the void; all together are the mine's
 };
 
 /// Rock encircled by passages. Its id is its index in World::pillars.
@@ -46,8 +47,13 @@ struct World {
   std::vector<Junction> junctions;
   std::vector<Passage> passages;
   std::vector<Pillar> pillars;
+  std::vector<Vec2> outline = {};  // outer rim of the void at mid height, counter-clockwise; empty where not known
   WorldNumbers numbers;
 };
+
+/// A basis of the junction graph's cycles, each the passages that it runs through in their order: as many as
+/// numbers.loops.
+std::vector<std::vector<int>> cycle_basis(const World& world);
 
 /// Ground that a wheel can stand on: the faces labelled floor.
 Mesh floor_of(const World& world);

@@ -21,7 +21,7 @@ ROOMS = {
 HOMES = {
     r"embree3/": ["rays/caster.cpp"],
     r"bt[A-Z]|Bullet|LinearMath/": ["sim/physics.cpp"],
-    r"CGAL/": ["worlds/check.cpp", "worlds/plan_region.cpp", "worlds/triangulate.cpp"],
+    r"CGAL/": ["worlds/exact.cpp", "worlds/triangulate.cpp"],
     r"GL/": ["eval/scene_osmesa.cpp"],
     r"png\.h": ["eval/png.cpp"],
     r"stb_|stb/": ["eval/type.cpp"],

@@ -112,6 +112,7 @@ int world_command(const std::string& scenario, const Common& common, Console& co
   const Scenario s = scenario_of(scenario, common);
   Stages stages(out_of(common, s.name), console);
   const World world = stages.world(s);
+  stages.pictures(world);
   stages.save_timing();
   console.result("mine: " + stages.out() + "/world");
   if (console.wants_json())
@@ -120,21 +121,36 @@ int world_command(const std::string& scenario, const Common& common, Console& co
   return 0;
 }
 
-int check_command(const std::string& mesh_file, Console& console) {
+int check_command(const std::string& given, Console& console) {
+  const bool folder = fs::is_directory(given);
   World world;
-  world.mesh = read_mesh(mesh_file);
+  if (folder)
+    world = load_world(given);
+  else
+    world.mesh = read_mesh(given);
   const WorldCheck check = check_world(world);
-  console.result(mesh_file + ": " + (check.ok() ? "sound" : check.what()));
+  const std::vector<std::string> faults = folder ? check_truth(world) : std::vector<std::string>{};
+  const bool ok = check.ok() && faults.empty();
+  console.result(given + ": " +
+                 (ok           ? "sound"
+                  : check.ok() ? "the mesh is sound, the truth does not fit it"
+                               : check.what()));
+  for (const std::string& fault : faults) console.result("  " + fault);
   if (console.wants_json())
-    console.json(ordered_json{{"ok", check.ok()},
-                              {"closed", check.closed},
-                              {"oriented", check.oriented},
-                              {"self_intersections", check.self_intersections},
-                              {"degenerate_faces", check.degenerate_faces},
-                              {"unlabelled", check.unlabelled},
-                              {"volume_m3", check.volume_m3}}
-                     .dump());
-  return check.ok() ? 0 : 1;
+    console.json(ordered_json{
+        {"ok", ok},
+        {"faces", world.mesh.face.size()},
+        {"closed", check.closed},
+        {"open_edges", check.open_edges},
+        {"oriented", check.oriented},
+        {"self_intersections", check.self_intersections},
+        {"degenerate_faces", check.degenerate_faces},
+        {"pinched_vertices", check.pinched_vertices},
+        {"unlabelled", check.unlabelled},
+        {"volume_m3", check.volume_m3},
+        {"truth",
+         faults}}.dump());
+  return ok ? 0 : 1;
 }
 
 int drive_command(const std::string& scenario, const std::string& world_dir, const Common& common, Console& console) {

@@ -70,8 +70,9 @@ void add_commands(CLI::App& app, Words& w) {
   add_common(run, w, true);
   CLI::App* world = app.add_subcommand("world", "a mine alone, or the check of a mesh");
   CLI::Option* scenario = world->add_option("scenario", w.first, "bundled name or TOML file");
-  CLI::Option* check =
-      world->add_option("--check", w.check, "verify this PLY mesh: closed, oriented, labelled, not self-crossing");
+  CLI::Option* check = world->add_option(
+      "--check", w.check,
+      "verify a mesh (PLY, OBJ): closed, oriented, labelled, not self-crossing; or a world's folder, its truth too");
   check->excludes(scenario);
   add_common(world, w, true);
   CLI::App* drive = app.add_subcommand("drive", "a recording, in a mine that is made or given");

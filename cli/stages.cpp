@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "eval/mine_views.h"
 #include "eval/trouble.h"
 
 #include <nlohmann/json.hpp>
@@ -65,16 +66,26 @@ World Stages::world(const Scenario& s) {
     const WorldCheck check = check_world(world);
     if (!check.ok())
       throw Error("the mine of seed " + std::to_string(s.seed) + " is broken: " + check.what(), Fault::bug);
+    if (const auto faults = check_truth(world); !faults.empty())
+      throw Error("the truth of seed " + std::to_string(s.seed) + " does not fit its mesh: " + faults.front(),
+                  Fault::bug);
     plan_route(world, s.route,
                static_cast<std::uint64_t>(s.seed));  // a route that cannot be is said before files change
     write_text(out_ + "/scenario.toml", resolved_toml(s));
     save_world(out_ + "/world", world);
+    save_plan(out_ + "/world", world);
     forget({"recording", "map", "score.json", "report"});
   });
   console_.note("  " + std::to_string(world.mesh.face.size()) + " triangles, " + std::to_string(world.pillars.size()) +
                 " pillars, " + std::to_string(world.numbers.loops) + " loops, void of " +
                 with_unit(world.numbers.volume_m3, "m3", 1));
   return world;
+}
+
+void Stages::pictures(const World& world) {
+  timed("pictures", [&] {
+    for (const MineView& view : mine_views(world)) write_png(out_ + "/world/" + view.name + ".png", view.picture);
+  });
 }
 
 Stages::Driven Stages::drive(const Scenario& s, const World& world) {

@@ -21,6 +21,8 @@ class Stages {
   Stages(std::string out, Console& console);
 
   World world(const Scenario& s);
+  /// OUT/world/plan.png, interior-1.png, interior-2.png
+  void pictures(const World& world);
   struct Driven {
     Recording recording;
     int exit_code;  // 1 where the drive ended early

@@ -1,74 +1,70 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/parallel.h"
+#include "worlds/crossings.h"
 #include "worlds/worlds.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/measure.h>
-#include <CGAL/Polygon_mesh_processing/orientation.h>
-#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
-#include <CGAL/Surface_mesh.h>
-
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace adit {
 namespace {
 
-namespace pmp = CGAL::Polygon_mesh_processing;
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
-using SurfaceMesh = CGAL::Surface_mesh<Point>;
-using FaceId = SurfaceMesh::Face_index;
-using Pair = std::pair<FaceId, FaceId>;
+// Corners of faces are one fan where a chain of shared sides joins them. A vertex with several fans is one at which the
+// surface only touches itself.
+class Fans {
+ public:
+  explicit Fans(size_t corners) : parent_(corners) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  std::uint32_t root(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(std::uint32_t a, std::uint32_t b) { parent_[std::max(root(a), root(b))] = std::min(root(a), root(b)); }
 
-std::vector<Point> points_of(const Mesh& mesh) {
-  std::vector<Point> points;
-  points.reserve(mesh.vertex.size());
-  for (const Vec3& v : mesh.vertex) points.emplace_back(v.x(), v.y(), v.z());
-  return points;
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+struct Side {
+  std::uint64_t ends;    // (lower, higher vertex)
+  std::uint32_t corner;  // 3 * face + k: the side runs from there to the next corner
+  bool operator<(const Side& o) const { return ends != o.ends ? ends < o.ends : corner < o.corner; }
+};
+
+std::uint32_t next_corner(std::uint32_t c) {
+  return c % 3 == 2 ? c - 2 : c + 1;
 }
 
-// Two faces that meet do so at a point, and that lies in some slab across the longest side that both of them reach
-// into: the slabs can be searched side by side.
-std::vector<std::vector<FaceId>> slabs_of(const SurfaceMesh& mesh, const Mesh& raw, size_t count) {
-  Vec3 low = raw.vertex[0], high = low;
-  for (const Vec3& v : raw.vertex) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
+// Sides that do not join two faces in opposite directions, and vertices of several fans.
+void check_joints(const Mesh& mesh, WorldCheck& check) {
+  std::vector<Side> sides;
+  sides.reserve(3 * mesh.face.size());
+  const auto vertex = [&](std::uint32_t c) { return mesh.face[c / 3][c % 3]; };
+  for (std::uint32_t c = 0; c < 3 * mesh.face.size(); ++c) {
+    const std::uint32_t a = vertex(c), b = vertex(next_corner(c));
+    sides.push_back({std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), c});
   }
-  int axis = 0;
-  (high - low).maxCoeff(&axis);
-  const double thickness = std::max((high - low)[axis], 1e-9) / static_cast<double>(count);
-  std::vector<std::vector<FaceId>> slabs(count);
-  const auto slab = [&](double x) {
-    return static_cast<size_t>(std::clamp((x - low[axis]) / thickness, 0.0, static_cast<double>(count) - 1));
-  };
-  for (FaceId f : mesh.faces()) {
-    double from = 1e300, to = -1e300;
-    for (auto v : mesh.vertices_around_face(mesh.halfedge(f))) {
-      from = std::min(from, mesh.point(v)[axis]);
-      to = std::max(to, mesh.point(v)[axis]);
+  std::sort(sides.begin(), sides.end());
+  Fans fans(sides.size());
+  for (size_t i = 0; i < sides.size();) {
+    size_t end = i + 1;
+    while (end < sides.size() && sides[end].ends == sides[i].ends) ++end;
+    const std::uint32_t a = sides[i].corner, b = sides[std::min(end - 1, i + 1)].corner;
+    if (end - i != 2 || vertex(a) == vertex(b)) {
+      ++check.open_edges;
+    } else {
+      fans.unite(a, next_corner(b));
+      fans.unite(next_corner(a), b);
     }
-    for (size_t k = slab(from); k <= slab(to); ++k) slabs[k].push_back(f);
+    i = end;
   }
-  return slabs;
-}
-
-size_t self_intersections(const SurfaceMesh& mesh, const Mesh& raw) {
-  const auto slabs = slabs_of(mesh, raw, std::max<size_t>(1, raw.face.size() / 50000));
-  std::vector<std::vector<Pair>> found(slabs.size());
-  parallel_for(slabs.size(), [&](size_t k) { pmp::self_intersections(slabs[k], mesh, std::back_inserter(found[k])); });
-  std::vector<Pair> all;  // a pair may be found in two slabs
-  for (const auto& pairs : found)
-    for (const Pair& p : pairs) all.emplace_back(std::min(p.first, p.second), std::max(p.first, p.second));
-  std::sort(all.begin(), all.end());
-  return static_cast<size_t>(std::unique(all.begin(), all.end()) - all.begin());
-}
-
-size_t degenerate_faces(const std::vector<Point>& points, const Mesh& mesh) {
-  size_t count = 0;
-  for (const auto& f : mesh.face) count += CGAL::collinear(points[f[0]], points[f[1]], points[f[2]]);
-  return count;
+  std::vector<char> seen(mesh.vertex.size(), 0);
+  for (std::uint32_t c = 0; c < sides.size(); ++c) {
+    if (fans.root(c) != c) continue;
+    char& fan = seen[vertex(c)];
+    check.pinched_vertices += fan == 1;
+    fan = static_cast<char>(std::min(2, fan + 1));
+  }
+  check.closed = check.open_edges == 0;
 }
 
 }  // namespace
@@ -79,10 +75,11 @@ std::string WorldCheck::what() const {
   const auto add = [&](bool wrong, const std::string& what) {
     if (wrong) text += (text.empty() ? "" : ", ") + what;
   };
-  add(!closed, "not closed");
+  add(!closed, "not closed (" + std::to_string(open_edges) + " edges that do not join two faces)");
   add(!oriented, "not oriented with normals out of the void");
   add(self_intersections > 0, std::to_string(self_intersections) + " pairs of faces that cut each other");
   add(degenerate_faces > 0, std::to_string(degenerate_faces) + " faces without area");
+  add(pinched_vertices > 0, std::to_string(pinched_vertices) + " points where the surface touches itself");
   add(unlabelled > 0, std::to_string(unlabelled) + " faces without label");
   return text;
 }
@@ -94,18 +91,11 @@ WorldCheck check_world(const World& world) {
                          ? mesh.face.size()
                          : static_cast<size_t>(std::count(mesh.label.begin(), mesh.label.end(), Label::none));
   if (mesh.face.empty()) return check;
-  const std::vector<Point> points = points_of(mesh);
-  check.degenerate_faces = degenerate_faces(points, mesh);
-  std::vector<std::array<std::size_t, 3>> faces;
-  faces.reserve(mesh.face.size());
-  for (const auto& f : mesh.face) faces.push_back({f[0], f[1], f[2]});
-  if (!pmp::is_polygon_soup_a_polygon_mesh(faces)) return check;  // edges of three faces, or faces against each other
-  SurfaceMesh surface;
-  pmp::polygon_soup_to_polygon_mesh(points, faces, surface);
-  check.closed = CGAL::is_closed(surface);
-  if (check.closed) check.volume_m3 = CGAL::to_double(pmp::volume(surface));
+  check.degenerate_faces = degenerate_faces(mesh);
+  check_joints(mesh, check);
+  if (check.closed) check.volume_m3 = enclosed_volume(mesh);
   check.oriented = check.closed && check.volume_m3 > 0;
-  check.self_intersections = self_intersections(surface, mesh);
+  check.self_intersections = crossing_pairs(mesh);
   return check;
 }
 

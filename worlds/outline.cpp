@@ -12,6 +12,7 @@ namespace {
 
 constexpr double lattice_m = 0.2;
 constexpr double far_m = 1e3;
+constexpr double deepest_m = 8;  // to which distances within polygons are told
 constexpr int band_rows = 64;
 
 struct Frame2 {
@@ -22,10 +23,7 @@ struct Frame2 {
   }
 };
 
-Lattice lattice_over(const std::vector<Drift>& drifts, double margin) {
-  Frame2 box;
-  for (const Drift& d : drifts)
-    for (const Vec2& p : d.line) box.add(p);
+Lattice lattice_over(const Frame2& box, double margin) {
   Lattice f;
   f.cell_m = lattice_m;
   f.origin = ((box.low.array() - margin) / lattice_m).floor().matrix() * lattice_m;
@@ -110,20 +108,101 @@ void open_rock(Lattice& f, double radius) {
   }
 }
 
+void round_off(Outline& o, double corner_radius_m, const std::string& cause) {
+  open_rock(o.depth, corner_radius_m);
+  o.loops = contours(o.depth, 0);
+  const auto outer = [](const Loop& loop) { return enclosed_area(loop) > 0; };
+  if (std::count_if(o.loops.begin(), o.loops.end(), outer) != 1)
+    throw Error("world: the void falls into several parts; " + cause);
+  std::rotate(o.loops.begin(), std::find_if(o.loops.begin(), o.loops.end(), outer), o.loops.end());
+}
+
+// Marks the nodes of rows [first, last) inside of a polygon: those that a row reaches after an odd number of crossings.
+void fill(const Lattice& f, const Polygon& polygon, int first, int last, std::vector<char>& inside) {
+  for (int j = first; j < last; ++j) {
+    const double y = f.node(0, j).y();
+    std::vector<double> x;
+    for (const Loop& ring : polygon) {
+      for (size_t i = 0; i < ring.size(); ++i) {
+        const Vec2 &a = ring[i], &b = ring[(i + 1) % ring.size()];
+        if ((a.y() > y) != (b.y() > y)) x.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
+      }
+    }
+    std::sort(x.begin(), x.end());
+    for (size_t k = 0; k + 1 < x.size(); k += 2)
+      for (int i = std::max(0, static_cast<int>(std::ceil((x[k] - f.origin.x()) / f.cell_m)));
+           i < f.width && f.node(i, j).x() < x[k + 1]; ++i)
+        inside[f.index(i, j)] = 1;
+  }
+}
+
+// Nodes of the void that lie far from every drift belong to the one from which they are reached first.
+void spread_nearest(Outline& o, double reach) {
+  const Lattice& f = o.depth;
+  std::vector<size_t> front;
+  for (size_t n = 0; n < o.nearest.size(); ++n)
+    if (o.nearest[n] >= 0) front.push_back(n);
+  for (size_t k = 0; k < front.size(); ++k) {
+    const size_t n = front[k];
+    const size_t i = n % f.width, j = n / f.width;
+    if (i == 0 || j == 0 || i + 1 >= static_cast<size_t>(f.width) || j + 1 >= static_cast<size_t>(f.height)) continue;
+    for (size_t next : {n - 1, n + 1, n - f.width, n + f.width}) {
+      if (o.nearest[next] >= 0 || f.value[next] > reach) continue;
+      o.nearest[next] = o.nearest[n];
+      front.push_back(next);
+    }
+  }
+}
+
 }  // namespace
 
 Outline outline_of(const std::vector<Drift>& drifts, double corner_radius_m) {
   Outline o;
   const double reach = 2 * corner_radius_m + 1.5;
-  o.depth = lattice_over(drifts, 10 + reach);
+  Frame2 box;
+  for (const Drift& d : drifts)
+    for (const Vec2& p : d.line) box.add(p);
+  o.depth = lattice_over(box, 10 + reach);
   o.nearest.assign(o.depth.value.size(), -1);
   unite(drifts, reach, o);
-  open_rock(o.depth, corner_radius_m);
-  o.loops = contours(o.depth, 0);
-  const auto outer = [](const Loop& loop) { return enclosed_area(loop) > 0; };
-  if (std::count_if(o.loops.begin(), o.loops.end(), outer) != 1)
-    throw Error("world: the void falls into several parts; widths are too small for the wander (world.wall_wander_m)");
-  std::rotate(o.loops.begin(), std::find_if(o.loops.begin(), o.loops.end(), outer), o.loops.end());
+  round_off(o, corner_radius_m, "widths are too small for the wander (world.wall_wander_m)");
+  return o;
+}
+
+Lattice depth_of(const std::vector<Polygon>& polygons, double corner_radius_m) {
+  Frame2 box;
+  for (const Polygon& polygon : polygons)
+    for (const Vec2& p : polygon[0]) box.add(p);
+  Lattice f = lattice_over(box, 10 + 2 * corner_radius_m + 1.5);
+  std::vector<char> inside(f.value.size(), 0);
+  for_bands(f, [&](int first, int last) {
+    for (const Polygon& polygon : polygons) {
+      fill(f, polygon, first, last, inside);
+      for (const Loop& ring : polygon) {
+        for (size_t k = 0; k < ring.size(); ++k) {
+          const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+          near_piece(f, a, b, deepest_m, first, last, [&](int i, int j) {
+            float& least = f.value[f.index(i, j)];
+            least = std::min(least, static_cast<float>(piece_distance(a, b, f.node(i, j))));
+          });
+        }
+      }
+    }
+  });
+  for (size_t n = 0; n < inside.size(); ++n)
+    if (inside[n]) f.value[n] = -std::clamp(f.value[n], 1e-3f, static_cast<float>(deepest_m));
+  return f;
+}
+
+Outline outline_of(const Lattice& depth, const std::vector<Drift>& drifts, double corner_radius_m) {
+  Outline o;
+  o.depth = depth;
+  std::fill(o.depth.value.begin(), o.depth.value.end(), static_cast<float>(far_m));
+  o.nearest.assign(depth.value.size(), -1);
+  unite(drifts, 2 * corner_radius_m + 1.5, o);
+  o.depth = depth;
+  spread_nearest(o, 2 * corner_radius_m + 1.5);
+  round_off(o, corner_radius_m, "the polygons must form one mine");
   return o;
 }
 

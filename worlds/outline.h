@@ -3,6 +3,7 @@
 
 #include "worlds/drift.h"
 #include "worlds/lattice.h"
+#include "worlds/polygons.h"
 
 #include <vector>
 
@@ -19,6 +20,11 @@ struct Outline {
 /// fits into it (the morphological opening; exact distances on a lattice of 0.2 m: straight ribs are good to some
 /// millimetres, corners to some centimetres).
 Outline outline_of(const std::vector<Drift>& drifts, double corner_radius_m);
+
+/// Signed distance from the ribs of a void that is given, negative within, up to 8 m either way.
+Lattice depth_of(const std::vector<Polygon>& polygons, double corner_radius_m);
+/// The outline of such a void, whose passages are the drifts.
+Outline outline_of(const Lattice& depth, const std::vector<Drift>& drifts, double corner_radius_m);
 
 /// The passage nearest to a point in or near the void.
 int passage_at(const Outline& outline, const Vec2& p);

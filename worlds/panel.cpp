@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
 #include "base/rng.h"
-#include "worlds/plan.h"
+#include "worlds/entry_set.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,74 +10,89 @@
 namespace adit {
 namespace {
 
+constexpr double least_pillar_m = 2.6;  // else nothing is left between its rounded corners
+constexpr double longest_gob_m = 6;     // how far entries run towards the gob beyond the last crosscut
+
 std::string metres(double v) {
   const std::string text = std::to_string(v);
   return text.substr(0, text.find('.') + 3) + " m";
 }
 
+void check_retreat(const PanelSettings& s) {
+  if (s.retreat_rows == 0) return;
+  if (s.crosscut_angle_deg != 90 || s.stagger != 0)
+    throw Error("world.panel.retreat_rows: pillars are split in panels with crosscut_angle_deg = 90 and stagger = 0");
+  if (s.retreat_rows >= s.crosscuts)
+    throw Error("world.panel.retreat_rows = " + std::to_string(s.retreat_rows) + ": at most " +
+                std::to_string(s.crosscuts - 1) + ", the rows between the crosscuts");
+  const double pillar = std::min(s.entry_spacing_m, s.crosscut_spacing_m) - s.width_m - 2 * s.spacing_sd_m;
+  if (pillar - 2 * s.stump_m < 2)
+    throw Error("world.panel.stump_m = " + metres(s.stump_m) + ": the pillars leave room for stumps of at most " +
+                metres((pillar - 2) / 2));
+}
+
 void check_panel(const PanelSettings& s) {
-  const double least = 2.6;  // of a pillar, else nothing is left between its rounded corners
   const double room =
       std::min(s.entry_spacing_m, s.crosscut_spacing_m * std::sin(s.crosscut_angle_deg * std::numbers::pi / 180)) -
       4 * s.spacing_sd_m;
   if (s.width_m <= 0) throw Error("world.panel.width_m = " + metres(s.width_m) + ": must be above 0");
-  if (s.width_m + least > room)
+  if (s.width_m + least_pillar_m > room)
     throw Error("world.panel.width_m = " + metres(s.width_m) + ": entries and crosscuts must leave pillars of " +
-                metres(least) + "; with entry_spacing_m, crosscut_spacing_m and spacing_sd_m as they are, at most " +
-                metres(room - least) + " wide");
+                metres(least_pillar_m) +
+                "; with entry_spacing_m, crosscut_spacing_m and spacing_sd_m as they are, at most " +
+                metres(room - least_pillar_m) + " wide");
   if (s.entries == 1 && s.stub_length_m * s.stub_share <= 0 && s.crosscuts < 2)
     throw Error("world.panel.entries = 1: one entry needs crosscuts >= 2 or stubs to have any length");
+  if (s.missing_share + s.dead_end_share + s.stopping_share > 1)
+    throw Error("world.panel.missing_share, dead_end_share, stopping_share: their sum must not be above 1");
+  check_retreat(s);
 }
 
-// Offsets of `n` parallel lines, the first at 0.
-std::vector<double> offsets(int n, double spacing, double sd, std::uint64_t seed, std::uint64_t which) {
-  std::vector<double> x(n, 0.0);
-  for (int i = 1; i < n; ++i)
-    x[i] = x[i - 1] + spacing + sd * std::clamp(normal(seed, Draw::world_layout, which, i), -2.0, 2.0);
-  return x;
+// Splits the pillar between two entries and two crosscuts by a cut along and one across, which leave four stumps.
+void split_pillar(MinePlan& plan, const PanelSettings& s, EntrySet& set, size_t gap, double x0, double x1, int near,
+                  int far) {
+  const double x = 0.5 * (x0 + x1), high = set.offset_m[gap + 1] - set.offset_m[gap];
+  const double across_m = std::min(12.0, x1 - x0 - s.width_m - 2 * s.stump_m);
+  const double along_m = std::min(12.0, high - s.width_m - 2 * s.stump_m);
+  const int centre = add_node(plan, 0.5 * (set.at(gap, x) + set.at(gap + 1, x)));
+  join(plan, node_at(plan, set, gap, x), centre, across_m);
+  join(plan, centre, node_at(plan, set, gap + 1, x), across_m);
+  join(plan, near, centre, along_m);
+  join(plan, centre, far, along_m);
 }
 
-struct Mark {
-  double x;
-  int node;
-};
-
-// The nodes of each entry, by x.
-using Entries = std::vector<std::vector<Mark>>;
-
-int add_node(MinePlan& plan, const Vec2& p) {
-  plan.nodes.push_back(p);
-  plan.cut.push_back(0);
-  return static_cast<int>(plan.nodes.size()) - 1;
+// Crosscuts where pillars were robbed: each has a node in its middle, where the cuts along end.
+void retreat(MinePlan& plan, const PanelSettings& s, EntrySet& set, size_t gap, const std::vector<double>& x) {
+  int near = -1;
+  for (size_t k = x.size() - 1 - s.retreat_rows; k < x.size(); ++k) {
+    const int a = node_at(plan, set, gap, x[k]), b = node_at(plan, set, gap + 1, x[k]);
+    const int middle = add_node(plan, 0.5 * (plan.nodes[a] + plan.nodes[b]));
+    join(plan, a, middle, s.width_m);
+    join(plan, middle, b, s.width_m);
+    if (near >= 0) split_pillar(plan, s, set, gap, x[k - 1], x[k], near, middle);
+    near = middle;
+  }
 }
 
-void join(MinePlan& plan, int a, int b, double width_m) {
-  plan.passages.push_back({a, b, width_m, {plan.nodes[a], plan.nodes[b]}});
-}
-
-// A node of an entry at x; one that is there already within half a width is used again.
-int node_at(MinePlan& plan, std::vector<Mark>& entry, double x, double y, double width_m) {
-  for (const Mark& m : entry)
-    if (std::abs(m.x - x) < 0.5 * width_m) return m.node;
-  entry.push_back({x, add_node(plan, {x, y})});
-  return entry.back().node;
-}
-
-void add_crosscuts(MinePlan& plan, const PanelSettings& s, const std::vector<double>& y, Entries& entries,
-                   std::uint64_t seed) {
+void add_crosscuts(MinePlan& plan, const PanelSettings& s, EntrySet& set, std::uint64_t seed) {
   const double lean = 1 / std::tan(s.crosscut_angle_deg * std::numbers::pi / 180);
-  const std::vector<double> x = offsets(s.crosscuts, s.crosscut_spacing_m, s.spacing_sd_m, seed, 1);
+  const std::vector<double> x = scattered(s.crosscuts, s.crosscut_spacing_m, s.spacing_sd_m, seed, 1);
+  const std::vector<double>& y = set.offset_m;
   for (int gap = 0; gap + 1 < s.entries; ++gap) {
-    for (double at : x) {
-      const double low = at + lean * y[gap] + s.stagger * s.crosscut_spacing_m * (gap % 2);
+    const size_t whole = s.retreat_rows > 0 ? x.size() - 1 - s.retreat_rows : x.size();
+    for (size_t k = 0; k < whole; ++k) {
+      const double low = x[k] + lean * y[gap] + s.stagger * s.crosscut_spacing_m * (gap % 2);
       const double high = low + lean * (y[gap + 1] - y[gap]);
-      const int a = node_at(plan, entries[gap], low, y[gap], s.width_m);
-      const int b = node_at(plan, entries[gap + 1], high, y[gap + 1], s.width_m);
-      join(plan, a, b, s.width_m);
+      const int a = node_at(plan, set, gap, low), b = node_at(plan, set, gap + 1, high);
+      // The first and the last join the entries: they are always driven through.
+      const bool end = k == 0 || k + 1 == x.size();
+      const CrosscutShares shares{s.missing_share, s.dead_end_share, s.stopping_share};
+      drive_crosscut(plan, a, b, s.width_m, end ? CrosscutShares{} : shares, seed, gap * 1000 + k);
     }
+    if (s.retreat_rows > 0) retreat(plan, s, set, gap, x);
   }
   if (s.entries == 1)
-    for (double at : x) node_at(plan, entries[0], at, y[0], s.width_m);
+    for (double at : x) node_at(plan, set, 0, at);
 }
 
 void add_stub(MinePlan& plan, const PanelSettings& s, int node, double direction, std::uint64_t which,
@@ -89,20 +104,47 @@ void add_stub(MinePlan& plan, const PanelSettings& s, int node, double direction
   join(plan, node, add_node(plan, end), s.width_m);
 }
 
+// Beyond the pillar line the roof has come down: entries end at rubble, at a distance that is drawn.
+void end_at_gob(MinePlan& plan, const PanelSettings& s, int node, std::uint64_t which, std::uint64_t seed) {
+  const double length = s.width_m + longest_gob_m * uniform(seed, Draw::world_layout, 4, which);
+  const int end = add_node(plan, plan.nodes[node] + Vec2(length, 0));
+  plan.cut[end] = 1;
+  join(plan, node, end, s.width_m);
+}
+
+// Half an oval that leads from the first entry's end round to the last one's.
+void add_loop_road(MinePlan& plan, const PanelSettings& s, int first, int last) {
+  const Vec2 from = plan.nodes[first], to = plan.nodes[last], middle = 0.5 * (from + to);
+  const double high = 0.5 * (to.y() - from.y()), deep = std::max(high, 1.2 * s.stub_length_m + 2 * s.width_m + 6);
+  std::vector<Vec2> line{from};
+  for (int k = 1; k < 12; ++k) {
+    const double a = std::numbers::pi * (k / 12.0 - 0.5);
+    const double base = from.x() + (to.x() - from.x()) * k / 12.0;
+    line.emplace_back(base + deep * std::cos(a), middle.y() + high * std::sin(a));
+  }
+  line.push_back(to);
+  plan.passages.push_back({first, last, s.width_m, line});
+}
+
 }  // namespace
 
 MinePlan panel_plan(const PanelSettings& s, std::uint64_t seed) {
   check_panel(s);
   MinePlan plan;
-  const std::vector<double> y = offsets(s.entries, s.entry_spacing_m, s.spacing_sd_m, seed, 0);
-  Entries entries(s.entries);
-  add_crosscuts(plan, s, y, entries, seed);
+  EntrySet set = entry_set({0, 0}, {1, 0}, s.width_m, scattered(s.entries, s.entry_spacing_m, s.spacing_sd_m, seed, 0));
+  add_crosscuts(plan, s, set, seed);
+  drive_entries(plan, set);
+  const bool loop = s.loop_road && s.entries > 1;
   for (int e = 0; e < s.entries; ++e) {
-    std::sort(entries[e].begin(), entries[e].end(), [](const Mark& a, const Mark& b) { return a.x < b.x; });
-    for (size_t i = 1; i < entries[e].size(); ++i) join(plan, entries[e][i - 1].node, entries[e][i].node, s.width_m);
-    add_stub(plan, s, entries[e].front().node, -1, 2 * e, seed);
-    add_stub(plan, s, entries[e].back().node, 1, 2 * e + 1, seed);
+    add_stub(plan, s, set.marks[e].front().node, -1, 2 * e, seed);
+    const int end = set.marks[e].back().node;
+    if (s.retreat_rows > 0)
+      end_at_gob(plan, s, end, e, seed);
+    else if (!loop || (e > 0 && e + 1 < s.entries))
+      add_stub(plan, s, end, 1, 2 * e + 1, seed);
   }
+  if (loop && s.retreat_rows == 0) add_loop_road(plan, s, set.marks.front().back().node, set.marks.back().back().node);
+  add_turnouts(plan, s.turnout_share, seed);
   return plan;
 }
 

@@ -93,6 +93,13 @@ void check_connected(const std::string& name, const MinePlan& plan) {
                   "; select one part (x_min ... y_max) or open the passages between (passages = \"all\")");
 }
 
+MinePlan drawn_plan(const WorldSettings& s, std::uint64_t seed) {
+  if (s.kind == "panel") return panel_plan(s.panel, seed);
+  if (s.kind == "rooms") return rooms_plan(s.rooms, seed);
+  if (s.kind == "district") return district_plan(s.district, seed);
+  return read_plan(s);
+}
+
 }  // namespace
 
 MinePlan split_crossings(MinePlan plan) {
@@ -103,8 +110,8 @@ MinePlan split_crossings(MinePlan plan) {
 
 MinePlan make_plan(const WorldSettings& s, std::uint64_t seed) {
   const bool from_file = s.kind == "plan";
-  const std::string name = from_file ? "world.plan = \"" + s.plan + "\"" : "world.panel";
-  MinePlan plan = split_crossings(from_file ? read_plan(s) : panel_plan(s.panel, seed));
+  const std::string name = from_file ? "world.plan = \"" + s.plan + "\"" : "world." + s.kind;
+  MinePlan plan = split_crossings(drawn_plan(s, seed));
   if (plan.passages.empty())
     throw Error(name + ": no passage lies in the part that is selected (world.x_min ... world.y_max)");
   check_connected(name, plan);

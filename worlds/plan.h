@@ -26,9 +26,11 @@ struct MinePlan {
 /// The plan that the settings ask for, checked: crossings are nodes, all is connected, widths are positive.
 MinePlan make_plan(const WorldSettings& settings, std::uint64_t seed);
 
-/// The two kinds.
+/// The kinds.
 MinePlan read_plan(const WorldSettings& settings);
 MinePlan panel_plan(const PanelSettings& settings, std::uint64_t seed);
+MinePlan rooms_plan(const RoomSettings& settings, std::uint64_t seed);
+MinePlan district_plan(const DistrictSettings& settings, std::uint64_t seed);
 
 /// Makes each crossing of two passages a node.
 MinePlan split_crossings(MinePlan plan);

@@ -27,7 +27,7 @@ PlanText text_of(const std::string& plan) {
   std::string known;
   for (const std::string& name : bundled_names("worlds/plans")) known += (known.empty() ? "" : ", ") + name;
   throw Error("world.plan = \"" + plan + "\": no bundled plan has this name (there are: " + known +
-              "); a file's name ends in .json");
+              "); a file's name ends in .json or .geojson");
 }
 
 struct Box2 {

@@ -16,6 +16,77 @@ Fields fields(PanelSettings& s) {
       {"width_m", &s.width_m, "of entries and crosscuts", 1.5, 12},
       {"stub_length_m", &s.stub_length_m, "dead ends by which entries run beyond the last crosscut", 0, 100},
       {"stub_share", &s.stub_share, "share of the entries' ends that have a dead end", 0, 1},
+      {"missing_share", &s.missing_share, "share of the crosscuts that are not driven", 0, 1},
+      {"dead_end_share", &s.dead_end_share, "share of the crosscuts driven from one side only", 0, 1},
+      {"stopping_share", &s.stopping_share, "share of the crosscuts closed by a stopping", 0, 1},
+      {"turnout_share", &s.turnout_share, "share of the junctions with a corner cut off", 0, 1},
+      {"loop_road", &s.loop_road, "an oval round from the first entry's end to the last one's"},
+      {"retreat_rows", &s.retreat_rows, "rows of pillars at the far end that are split into stumps, gob beyond", 0,
+       100},
+      {"stump_m", &s.stump_m, "side of the stumps", 2.6, 20},
+  };
+}
+
+Fields fields(RoomSettings& s) {
+  return {
+      {"butts", &s.butts, "parallel butts", 1, 6},
+      {"butt_spacing_m", &s.butt_spacing_m, "between the butts' centre lines", 6, 60},
+      {"butt_width_m", &s.butt_width_m, "of the butts and their crosscuts", 1.5, 8},
+      {"butt_crosscut_m", &s.butt_crosscut_m, "between the crosscuts of the butts", 10, 100},
+      {"rooms", &s.rooms, "rooms on a side", 1, 200},
+      {"both_sides", &s.both_sides, "rooms to both sides of the butts, or to one"},
+      {"spacing_m", &s.spacing_m, "between the rooms' centre lines", 6, 60},
+      {"spacing_sd_m", &s.spacing_sd_m, "its scatter", 0, 3},
+      {"width_m", &s.width_m, "of a room", 1.5, 12},
+      {"width_sd_m", &s.width_sd_m, "its scatter from room to room", 0, 2},
+      {"depth_m", &s.depth_m, "of a room from its butt", 15, 200},
+      {"depth_sd_m", &s.depth_sd_m, "its scatter", 0, 30},
+      {"neck_m", &s.neck_m, "length of the narrow neck through which a room was turned", 3, 15},
+      {"neck_width_m", &s.neck_width_m, "its width", 1.5, 8},
+      {"through_spacing_m", &s.through_spacing_m, "between the breakthroughs from a room to the next", 8, 100},
+      {"through_width_m", &s.through_width_m, "their width", 1.5, 8},
+      {"through_share", &s.through_share, "share of them that were driven", 0, 1},
+  };
+}
+
+Fields fields(DistrictSettings& s) {
+  return {
+      {"length_m", &s.length_m, "of passages, reached by whole pitches of the mains", 100, 200000},
+      {"mains", &s.mains, "entries of the mains", 2, 12},
+      {"main_spacing_m", &s.main_spacing_m, "between their centre lines", 6, 100},
+      {"panel_entries", &s.panel_entries, "entries of each panel", 2, 12},
+      {"panel_spacing_m", &s.panel_spacing_m, "between their centre lines", 6, 100},
+      {"panel_crosscuts", &s.panel_crosscuts, "crosscuts of each panel", 1, 90},
+      {"crosscut_spacing_m", &s.crosscut_spacing_m, "between crosscuts", 6, 100},
+      {"spacing_sd_m", &s.spacing_sd_m, "scatter of all spacings", 0, 3},
+      {"barrier_m", &s.barrier_m, "width of the barrier pillars beside mains and between panels", 8, 60},
+      {"width_m", &s.width_m, "of entries and crosscuts", 1.5, 9},
+      {"missing_share", &s.missing_share, "share of the crosscuts that are not driven", 0, 1},
+      {"stopping_share", &s.stopping_share, "share of the crosscuts closed by a stopping", 0, 1},
+  };
+}
+
+Fields fields(WearSettings& s) {
+  return {
+      {"slough_m", &s.slough_m, "depth to which ribs have spalled at mid height", 0, 0.8},
+      {"slough_share", &s.slough_share, "share of the ribs' length that has spalled", 0, 1},
+      {"slough_length_m", &s.slough_length_m, "of a stretch that has spalled", 1, 50},
+      {"sag_m", &s.sag_m, "greatest sag of the roof in the middle of passages", 0, 0.4},
+      {"heave_m", &s.heave_m, "greatest heave of the floor in the middle of passages", 0, 0.4},
+      {"bedding_m", &s.bedding_m, "height of the roof's steps from one bedding plane to the next", 0, 0.2},
+      {"scallop_m", &s.scallop_m, "depth of the cutting drum's grooves in the ribs", 0, 0.05},
+      {"scallop_pitch_m", &s.scallop_pitch_m, "height from groove to groove", 0.2, 1},
+  };
+}
+
+Fields fields(RockSettings& s) {
+  return {
+      {"dust_share", &s.dust_share, "share of the surfaces under rock dust", 0, 1},
+      {"coal", &s.coal, "reflectivity of bare ribs at 905 nm", 0.02, 1},
+      {"shale", &s.shale, "reflectivity of bare roof", 0.02, 1},
+      {"fireclay", &s.fireclay, "reflectivity of bare floor", 0.02, 1},
+      {"wet_share", &s.wet_share, "share of the surfaces that are wet", 0, 1},
+      {"patch_m", &s.patch_m, "size of the patches of dust and water", 0.5, 50},
   };
 }
 
@@ -30,8 +101,9 @@ Fields fields(RoughnessSettings& s) {
 
 Fields fields(WorldSettings& s) {
   Fields all = {
-      {"kind", &s.kind, "how the mine is laid out", {"plan", "panel"}},
-      {"plan", &s.plan, "bundled plan, or a JSON file of centre lines with widths"},
+      {"kind", &s.kind, "how the mine is laid out", {"plan", "panel", "rooms", "district"}},
+      {"plan", &s.plan,
+       "bundled plan, a JSON file of centre lines with widths, or a GeoJSON file of polygons with pillars as holes"},
       {"passages", &s.passages, "of the plan: those open, or all, those walled off too", {"open", "all"}},
       {"x_min", &s.x_min, "the part of the plan that is made, metres", -1e6, 1e6},
       {"x_max", &s.x_max, "the same", -1e6, 1e6},
@@ -50,11 +122,15 @@ Fields fields(WorldSettings& s) {
       {"roll_m", &s.roll_m, "rms of the floor's rolls about its plane", 0, 1.5},
       {"roll_min_m", &s.roll_min_m, "shortest wavelength of the rolls", 20, 1000},
       {"roll_max_m", &s.roll_max_m, "longest wavelength of the rolls", 20, 1000},
-      {"reflectivity", &s.reflectivity, "mean, diffuse, at 905 nm", 0.02, 1},
+      {"reflectivity", &s.reflectivity, "of rock dust: mean, diffuse, at 905 nm", 0.02, 1},
       {"reflectivity_sd", &s.reflectivity_sd, "its smooth variation", 0, 0.3},
       {"mesh_edge_m", &s.mesh_edge_m, "length of the mesh's edges", 0.05, 1},
   };
   append(all, "panel", fields(s.panel));
+  append(all, "rooms", fields(s.rooms));
+  append(all, "district", fields(s.district));
+  append(all, "wear", fields(s.wear));
+  append(all, "rock", fields(s.rock));
   append(all, "floor", fields(s.floor));
   append(all, "roof", fields(s.roof));
   append(all, "rib", fields(s.rib));

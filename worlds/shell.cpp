@@ -8,11 +8,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace adit {
 namespace {
 
-constexpr double lean_limit = 0.5;  // how far a rib may stand out over its foot, per metre of height
+constexpr double lean_limit = 0.5;       // how far a rib may stand out over its foot, per metre of height
+constexpr double slough_of_rock = 0.35;  // from either side of a thin pillar: some is left
 constexpr size_t grain = 512;
 
 // One column of rib vertices: where it stands, where the rock is.
@@ -20,7 +22,15 @@ struct Column {
   Vec2 smooth, normal;  // on the smooth outline; unit, into the rock
   Vec2 foot;            // with the roughness of mid height: where floor and roof end
   double floor_z, roof_z, offset_m;
+  double slough_m;  // how far it has spalled at mid height
 };
+
+// How much rock there is behind a rib, as far as it matters.
+double rock_behind_m(const Lattice& depth, const Vec2& p, const Vec2& normal) {
+  double t = 0.4;
+  while (t < 2.4 && depth.at(p + (t + 0.2) * normal) > 0.6 * (t + 0.2)) t += 0.2;
+  return t;
+}
 
 std::vector<Vec2> spaced(const Loop& loop, double edge_m) {
   double length = 0;
@@ -43,7 +53,7 @@ std::vector<Vec2> spaced(const Loop& loop, double edge_m) {
   return points;
 }
 
-std::vector<Column> columns_of(const Loop& loop, const Terrain& terrain, double edge_m) {
+std::vector<Column> columns_of(const Loop& loop, const Terrain& terrain, const Lattice& depth, double edge_m) {
   const std::vector<Vec2> points = spaced(loop, edge_m);
   const size_t n = points.size();
   std::vector<Column> columns(n);
@@ -59,6 +69,9 @@ std::vector<Column> columns_of(const Loop& loop, const Terrain& terrain, double 
         c.foot = c.smooth + c.offset_m * c.normal;
         c.floor_z = terrain.floor_z(c.foot);
         c.roof_z = terrain.roof_z(c.foot);
+        c.slough_m = terrain.slough_m(c.smooth);
+        if (c.slough_m > 0)
+          c.slough_m = std::min(c.slough_m, slough_of_rock * rock_behind_m(depth, c.smooth, c.normal));
       },
       grain);
   return columns;
@@ -70,7 +83,9 @@ Vec3 rib_point(const Column& c, double share, const Terrain& terrain) {
   const double fade = std::clamp(to_edge / 0.4, 0.0, 1.0);
   const double rough = terrain.rib_offset_m({c.smooth.x(), c.smooth.y(), z});
   const double more = std::clamp(fade * (rough - c.offset_m), -lean_limit * to_edge, lean_limit * to_edge);
-  const Vec2 p = c.foot + more * c.normal;
+  // Spalled under the brow of the roof and above the foot, most a little above the middle.
+  const double at = std::sin(std::numbers::pi * std::pow(share, 0.85));
+  const Vec2 p = c.foot + (more + c.slough_m * at * at) * c.normal;
   return {p.x(), p.y(), z};
 }
 
@@ -150,10 +165,29 @@ class Builder {
   }
 
  private:
-  void add_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, Label label, int part) {
+  void add_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, Label label, int part, int passage) {
     shell_.mesh.face.push_back({a, b, c});
     shell_.mesh.label.push_back(label);
     shell_.mesh.part.push_back(part);
+    shell_.mesh.passage.push_back(passage);
+  }
+
+  void add_volume(int passage, double volume_m3) {
+    if (shell_.volume_m3.size() <= static_cast<size_t>(passage)) shell_.volume_m3.resize(passage + size_t{1}, 0.0);
+    shell_.volume_m3[passage] += volume_m3;
+  }
+
+  double six_volumes(const Vec3& o, std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    const auto& v = shell_.mesh.vertex;
+    return (v[a] - o).dot((v[b] - o).cross(v[c] - o));
+  }
+
+  // Of the upright prism between a floor triangle and the roof above it.
+  double prism_m3(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    const auto& v = shell_.mesh.vertex;
+    const Vec3 u = v[b] - v[a], w = v[c] - v[a];
+    const double height = v[n_ + a].z() - v[a].z() + v[n_ + b].z() - v[b].z() + v[n_ + c].z() - v[c].z();
+    return 0.5 * (u.x() * w.y() - u.y() * w.x()) * height / 3;
   }
 
   // Vertices 0 .. n-1 are the floor's, n .. 2n-1 the roof's; those of the ribs' feet come first in each.
@@ -179,8 +213,9 @@ class Builder {
         grain);
     for (const auto& f : plan.face) {
       const int passage = passage_at(outline_, (plan.vertex[f[0]] + plan.vertex[f[1]] + plan.vertex[f[2]]) / 3);
-      add_face(f[0], f[2], f[1], Label::floor, passage);
-      add_face(n_ + f[0], n_ + f[1], n_ + f[2], Label::roof, passage);
+      add_face(f[0], f[2], f[1], Label::floor, passage, passage);
+      add_face(n_ + f[0], n_ + f[1], n_ + f[2], Label::roof, passage, passage);
+      add_volume(passage, prism_m3(f[0], f[1], f[2]));
     }
   }
 
@@ -202,20 +237,30 @@ class Builder {
       if (r == rows_) return n_ + static_cast<std::uint32_t>(first + i);
       return base + static_cast<std::uint32_t>(i * between + r - 1);
     };
+    std::vector<char> capped(n);
+    for (size_t i = 0; i < n; ++i) capped[i] = capped_(loop[i].smooth);
     Loop middle;
     for (size_t i = 0; i < n; ++i) {
       const size_t j = (i + 1) % n;
-      const Label label = capped_(loop[i].smooth) && capped_(loop[j].smooth) ? Label::cap : Label::rib;
+      const Label label = capped[i] && capped[j] ? Label::cap : Label::rib;
+      const int passage = passage_at(outline_, 0.5 * (loop[i].smooth + loop[j].smooth));
+      // Between the strip, the upright quad at its feet and the upright polygons at its two columns.
+      double six = 0;
+      const Vec3 o = vertex[at(i, 0)];
       for (int r = 0; r < rows_; ++r) {
         const std::uint32_t a = at(i, r), b = at(j, r), c = at(j, r + 1), d = at(i, r + 1);
+        six += (i + r) % 2 ? six_volumes(o, a, b, c) + six_volumes(o, a, c, d)
+                           : six_volumes(o, a, b, d) + six_volumes(o, b, c, d);
+        six += six_volumes(o, at(j, 0), c, b);
         if ((i + r) % 2) {
-          add_face(a, b, c, label, pillar);
-          add_face(a, c, d, label, pillar);
+          add_face(a, b, c, label, pillar, passage);
+          add_face(a, c, d, label, pillar, passage);
         } else {
-          add_face(a, b, d, label, pillar);
-          add_face(b, c, d, label, pillar);
+          add_face(a, b, d, label, pillar, passage);
+          add_face(b, c, d, label, pillar, passage);
         }
       }
+      add_volume(passage, six / 6);
       middle.push_back(vertex[at(i, rows_ / 2)].head<2>());
     }
     shell_.mid_height.push_back(std::move(middle));
@@ -224,10 +269,15 @@ class Builder {
   void colour() {
     Mesh& m = shell_.mesh;
     m.reflectivity.resize(m.face.size());
+    m.material.resize(m.face.size());
+    m.wetness.resize(m.face.size());
     parallel_for(
         m.face.size(),
         [&](size_t f) {
-          m.reflectivity[f] = terrain_.reflectivity((m.corner(f, 0) + m.corner(f, 1) + m.corner(f, 2)) / 3);
+          const Rock rock = terrain_.rock((m.corner(f, 0) + m.corner(f, 1) + m.corner(f, 2)) / 3, m.label[f]);
+          m.reflectivity[f] = rock.reflectivity;
+          m.material[f] = rock.material;
+          m.wetness[f] = rock.wetness;
         },
         4096);
   }
@@ -247,7 +297,7 @@ Shell make_shell(const Outline& outline, const Terrain& terrain, const std::func
   std::vector<std::vector<Column>> loops;
   std::vector<Loop> feet;
   for (const Loop& loop : outline.loops) {
-    loops.push_back(columns_of(loop, terrain, edge_m));
+    loops.push_back(columns_of(loop, terrain, outline.depth, edge_m));
     feet.emplace_back();
     for (const Column& c : loops.back()) feet.back().push_back(c.foot);
   }

@@ -14,7 +14,9 @@ namespace adit {
 /// The surface of a mine's void.
 struct Shell {
   Mesh mesh;
-  std::vector<Loop> mid_height;  // the ribs at mid height, void to the left; the outer one first, then pillars by id
+  std::vector<Loop> mid_height;   // the ribs at mid height, void to the left; the outer one first, then pillars by id
+  std::vector<double> volume_m3;  // (passages) each one's share of the void: what lies between its floor and its roof,
+                                  // and between that and its ribs
 };
 
 /// Floor and roof over one triangulation of the plan, ribs as rows of quads between their outlines. Ribs are rough as a

@@ -11,22 +11,61 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr int roll_count = 12;
 
+constexpr double full_sag_m = 1;  // from the ribs: where sag and heave reach their full height
+
+// A field of unit variance whose values are all but normal.
+Waves unit(double length_m, std::uint64_t seed, Draw draw, std::uint64_t which, bool flat) {
+  return {{1, length_m / 4, 1.5, 0, 48, 3}, seed, draw, which, flat};
+}
+
+// The value below which a share of a normal distribution lies.
+double quantile(double share) {
+  double low = -4, high = 4;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (low + high);
+    (0.5 * std::erfc(-middle / std::sqrt(2.0)) < share ? low : high) = middle;
+  }
+  return low;
+}
+
+double smooth_step(double x) {
+  x = std::clamp(x, 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
+
+// 1 where a field is below the value that a share of it is below, 0 above, a soft rim between.
+double cover(double field, double below, double softness) {
+  return smooth_step(0.5 + (below - field) / softness);
+}
+
 Waves rough(const RoughnessSettings& r, double edge_m, std::uint64_t seed, std::uint64_t which, bool flat) {
   return {{r.rms_m, r.correlation_m, 0.7, 2 * edge_m}, seed, Draw::world_roughness, which, flat};
 }
 
 }  // namespace
 
-Terrain::Terrain(const WorldSettings& s, const Vec2& middle, std::uint64_t seed)
+Terrain::Terrain(const WorldSettings& s, const Vec2& middle, const Lattice& depth, std::uint64_t seed)
     : mean_height_(s.height_m),
       roll_amplitude_(s.roll_m * std::sqrt(2.0 / roll_count)),
       mean_reflectivity_(s.reflectivity),
+      wear_(s.wear),
+      rock_settings_(s.rock),
+      slough_below_(quantile(s.wear.slough_share)),
+      dust_below_(quantile(s.rock.dust_share)),
+      wet_below_{quantile(std::pow(s.rock.wet_share, 0.6)), quantile(s.rock.wet_share),
+                 quantile(std::pow(s.rock.wet_share, 1.6))},
+      depth_(depth),
       middle_(middle),
       height_({s.height_sd_m, s.height_length_m / 4, 1.5, 5, 48, 2.5}, seed, Draw::world_height, 0, true),
       floor_(rough(s.floor, s.mesh_edge_m, seed, 0, true)),
       roof_(rough(s.roof, s.mesh_edge_m, seed, 1, true)),
       rib_(rough(s.rib, s.mesh_edge_m, seed, 2, false)),
-      patches_({s.reflectivity_sd, 1.5, 0.7, 0.4, 48, 2.5}, seed, Draw::world_material, 0, false) {
+      patches_({s.reflectivity_sd, 1.5, 0.7, 0.4, 48, 2.5}, seed, Draw::world_material, 0, false),
+      slough_(unit(s.wear.slough_length_m, seed, Draw::world_roughness, 3, true)),
+      sag_(unit(25, seed, Draw::world_roughness, 4, true)),
+      bedding_(unit(8, seed, Draw::world_roughness, 5, true)),
+      dust_(unit(s.rock.patch_m, seed, Draw::world_material, 1, false)),
+      water_(unit(2 * s.rock.patch_m, seed, Draw::world_material, 2, false)) {
   const double dip = 2 * pi * uniform(seed, Draw::world_roll, 0);
   grade_ = 0.01 * s.grade_percent * Vec2(std::cos(dip), std::sin(dip));
   const double shortest = std::min(s.roll_min_m, s.roll_max_m), longest = std::max(s.roll_min_m, s.roll_max_m);
@@ -48,15 +87,54 @@ double Terrain::seam_z(const Vec2& p) const {
 double Terrain::height_m(const Vec2& p) const {
   return mean_height_ + height_(p);
 }
+double Terrain::across(const Vec2& p) const {
+  const double s = std::clamp(-depth_.at(p) / full_sag_m, 0.0, 1.0);
+  return s * (2 - s);
+}
 double Terrain::floor_z(const Vec2& p) const {
-  return seam_z(p) + floor_(p);
+  double z = seam_z(p) + floor_(p);
+  if (wear_.heave_m > 0) z += wear_.heave_m * across(p) * smooth_step(0.5 - 0.5 * sag_(p));
+  return z;
 }
 double Terrain::roof_z(const Vec2& p) const {
-  return seam_z(p) + height_m(p) + roof_(p);
+  double z = seam_z(p) + height_m(p) + roof_(p);
+  if (wear_.sag_m > 0) z -= wear_.sag_m * across(p) * smooth_step(0.5 + 0.5 * sag_(p));
+  // Steps that are as steep as two edges of the mesh.
+  if (wear_.bedding_m > 0) z += wear_.bedding_m * smooth_step(0.5 + 4 * (bedding_(p) - 0.7));
+  return z;
 }
 
-float Terrain::reflectivity(const Vec3& p) const {
-  return static_cast<float>(std::clamp(mean_reflectivity_ + patches_(p), 0.02, 1.0));
+double Terrain::rib_offset_m(const Vec3& p) const {
+  double offset = rib_(p);
+  if (wear_.scallop_m > 0)
+    offset += wear_.scallop_m * (0.5 - std::abs(std::sin(pi * (p.z() - seam_z(p.head<2>())) / wear_.scallop_pitch_m)));
+  return offset;
+}
+
+double Terrain::slough_m(const Vec2& p) const {
+  if (wear_.slough_m <= 0) return 0;
+  return wear_.slough_m * cover(slough_(p), slough_below_, 0.8);
+}
+
+Rock Terrain::rock(const Vec3& p, Label label) const {
+  const double patch = patches_(p);
+  const bool bare = rock_settings_.dust_share < 1;
+  const double dust = bare ? cover(dust_(p), dust_below_, 0.6) : 1;
+  const bool floor = label == Label::floor, roof = label == Label::roof;
+  const Material under = floor                 ? Material::fireclay
+                         : roof                ? Material::shale
+                         : label == Label::cap ? Material::block
+                                               : Material::coal;
+  const double own = floor ? rock_settings_.fireclay : roof ? rock_settings_.shale : rock_settings_.coal;
+  double wet = 0;
+  if (rock_settings_.wet_share > 0) {
+    // Water runs down: of the floor more is wet than of the ribs, of those more than of the roof.
+    wet = cover(water_(p), wet_below_[floor ? 0 : roof ? 2 : 1], 0.8);
+  }
+  const double dry = dust * (mean_reflectivity_ + patch) + (1 - dust) * own * (1 + patch / mean_reflectivity_);
+  const double seen = dry * (1 - 0.5 * wet);  // wet rock reflects about half as much as dry
+  return {dust > 0.5 ? Material::rock_dust : under, static_cast<float>(std::clamp(seen, 0.02, 1.0)),
+          static_cast<float>(wet)};
 }
 
 }  // namespace adit

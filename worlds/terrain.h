@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/mesh.h"
+#include "worlds/lattice.h"
 #include "worlds/waves.h"
 #include "worlds/worlds.h"
 
@@ -9,29 +11,45 @@
 
 namespace adit {
 
+/// What a place of the rock's surface is.
+struct Rock {
+  Material material;
+  float reflectivity, wetness;
+};
+
 /// Floor and roof of a mine over its plan, and what the rock is like. Smooth parts: the seam's plane with rolls, the
 /// mined height. Rough parts: self-affine.
 class Terrain {
  public:
-  Terrain(const WorldSettings& settings, const Vec2& middle, std::uint64_t seed);
+  /// @param depth  signed distance from the ribs in plan, negative in the void; must outlive the terrain
+  Terrain(const WorldSettings& settings, const Vec2& middle, const Lattice& depth, std::uint64_t seed);
 
   double floor_z(const Vec2& p) const;  // with roughness
   double roof_z(const Vec2& p) const;
   double seam_z(const Vec2& p) const;    // the floor without roughness
   double height_m(const Vec2& p) const;  // without roughness
   /// How far a rib's rock stands back, > 0 into the rock.
-  double rib_offset_m(const Vec3& p) const { return rib_(p); }
-  float reflectivity(const Vec3& p) const;
+  double rib_offset_m(const Vec3& p) const;
+  /// How far the rib has spalled at mid height beyond that, >= 0.
+  double slough_m(const Vec2& p) const;
+  Rock rock(const Vec3& p, Label label) const;
 
  private:
   struct Roll {
     Vec2 k;
     double phase;
   };
+  double across(const Vec2& p) const;  // 0 at the ribs, 1 in the middle of a passage
+
   double mean_height_, roll_amplitude_, mean_reflectivity_;
+  WearSettings wear_;
+  RockSettings rock_settings_;
+  double slough_below_, dust_below_;  // the field's value below which a place is spalled, dusted
+  std::array<double, 3> wet_below_;   // floor, ribs, roof
+  const Lattice& depth_;
   Vec2 middle_, grade_;
   std::vector<Roll> rolls_;
-  Waves height_, floor_, roof_, rib_, patches_;
+  Waves height_, floor_, roof_, rib_, patches_, slough_, sag_, bedding_, dust_, water_;
 };
 
 }  // namespace adit

@@ -5,7 +5,9 @@
 #include "worlds/drift.h"
 #include "worlds/outline.h"
 #include "worlds/plan.h"
+#include "worlds/polygons.h"
 #include "worlds/shell.h"
+#include "worlds/skeleton.h"
 #include "worlds/terrain.h"
 
 #include <algorithm>
@@ -19,8 +21,9 @@ std::string text(double v) {
   return t.substr(0, t.find('.') + 3);
 }
 
-void check_settings(const WorldSettings& s) {
-  const double finest = s.kind == "panel" ? s.panel.width_m : 2.4;
+void check_settings(const WorldSettings& s, const MinePlan& plan) {
+  double finest = plan.passages[0].width_m;
+  for (const PlanPassage& p : plan.passages) finest = std::min(finest, p.width_m);
   const double coarsest = std::min(finest, s.height_m) / 3;
   if (s.mesh_edge_m > coarsest)
     throw Error("world.mesh_edge_m = " + text(s.mesh_edge_m) + ": too coarse for passages of " + text(finest) +
@@ -38,18 +41,27 @@ Vec2 middle_of(const MinePlan& plan) {
   return 0.5 * (low + high);
 }
 
-// Where a rib is the face at which a passage was cut off by the selection's border.
-bool is_cap(const MinePlan& plan, const std::vector<Drift>& drifts, const Vec2& p) {
-  for (size_t i = 0; i < drifts.size(); ++i) {
-    const Drift& d = drifts[i];
-    for (bool at_b : {false, true}) {
-      if (!plan.cut[at_b ? plan.passages[i].b : plan.passages[i].a]) continue;
-      const double half = std::max(d.left.back(), d.right.back()) + 0.5;
-      if (((at_b ? d.line.back() : d.line.front()) - p).norm() < half && std::abs(beyond_end(d, at_b, p)) < 0.3)
-        return true;
-    }
-  }
-  return false;
+// Ends of passages that are not rock: where the selection's border cut them off, stoppings, gob.
+struct CutEnd {
+  const Drift* drift;
+  bool at_b;
+  double half_m;  // of the face, with a margin
+};
+
+std::vector<CutEnd> cut_ends(const MinePlan& plan, const std::vector<Drift>& drifts) {
+  std::vector<CutEnd> ends;
+  for (size_t i = 0; i < drifts.size(); ++i)
+    for (bool at_b : {false, true})
+      if (plan.cut[at_b ? plan.passages[i].b : plan.passages[i].a])
+        ends.push_back({&drifts[i], at_b, std::max(drifts[i].left.back(), drifts[i].right.back()) + 0.5});
+  return ends;
+}
+
+bool is_cap(const std::vector<CutEnd>& ends, const Vec2& p) {
+  return std::any_of(ends.begin(), ends.end(), [&](const CutEnd& e) {
+    return ((e.at_b ? e.drift->line.back() : e.drift->line.front()) - p).norm() < e.half_m &&
+           std::abs(beyond_end(*e.drift, e.at_b, p)) < 0.3;
+  });
 }
 
 Vec3 on_floor(const Vec2& p, const Terrain& terrain) {
@@ -103,21 +115,27 @@ void add_numbers(const std::vector<Loop>& mid_height, World& world) {
 }  // namespace
 
 World make_world(const WorldSettings& s, std::uint64_t seed, const Progress& progress) {
-  check_settings(s);
-  const MinePlan plan = make_plan(s, seed);
+  const bool drawn = s.kind == "plan" && s.plan.ends_with(".geojson");
+  const Lattice depth = drawn ? depth_of(read_polygons(s.plan), s.corner_radius_m) : Lattice{};
+  Skeleton skeleton = drawn ? skeleton_of(depth) : Skeleton{make_plan(s, seed), {}};
+  const MinePlan& plan = skeleton.plan;
+  check_settings(s, plan);
   progress("laying out the mine", 0, 4);
-  const std::vector<Drift> drifts = drive_passages(plan, s, seed);
-  const Outline outline = outline_of(drifts, s.corner_radius_m);
+  const std::vector<Drift> drifts = drawn ? std::move(skeleton.drifts) : drive_passages(plan, s, seed);
+  const Outline outline = drawn ? outline_of(depth, drifts, s.corner_radius_m) : outline_of(drifts, s.corner_radius_m);
   progress("laying out the mine", 1, 4);
-  const Terrain terrain(s, middle_of(plan), seed);
+  const Terrain terrain(s, middle_of(plan), outline.depth, seed);
+  const std::vector<CutEnd> ends = cut_ends(plan, drifts);
   Shell shell = make_shell(
-      outline, terrain, [&](const Vec2& p) { return is_cap(plan, drifts, p); }, s.mesh_edge_m, s.height_m, seed);
+      outline, terrain, [&](const Vec2& p) { return is_cap(ends, p); }, s.mesh_edge_m, s.height_m, seed);
   progress("laying out the mine", 3, 4);
   World world;
   world.name = s.kind == "plan" ? s.plan : s.kind;
   world.mesh = std::move(shell.mesh);
   add_graph(plan, drifts, terrain, world);
+  for (size_t i = 0; i < shell.volume_m3.size(); ++i) world.passages[i].volume_m3 = shell.volume_m3[i];
   add_numbers(shell.mid_height, world);
+  world.outline = std::move(shell.mid_height[0]);
   progress("laying out the mine", 4, 4);
   return world;
 }

@@ -22,8 +22,52 @@ struct PanelSettings {
   double crosscut_angle_deg = 90;  // to the entries
   double stagger = 0;              // every second row of crosscuts is moved by this share of the spacing
   double width_m = 3.7;
-  double stub_length_m = 9;  // dead ends by which entries run beyond the last crosscut
-  double stub_share = 0.75;  // of the entries' ends that have one
+  double stub_length_m = 9;   // dead ends by which entries run beyond the last crosscut
+  double stub_share = 0.75;   // of the entries' ends that have one
+  double missing_share = 0;   // of the crosscuts but the first and last: not driven
+  double dead_end_share = 0;  // driven from one side only
+  double stopping_share = 0;  // closed by a stopping: two faces labelled cap
+  double turnout_share = 0;   // of the junctions with a corner cut off
+  bool loop_road = false;     // an oval round from the first entry's end to the last one's
+  int retreat_rows = 0;       // rows of pillars at the far end that are split into stumps, gob beyond
+  double stump_m = 3.5;       // side of the stumps
+};
+
+/// Old workings: rooms driven off butts through narrow necks, joined by breakthroughs.
+struct RoomSettings {
+  int butts = 2;
+  double butt_spacing_m = 14;
+  double butt_width_m = 3.5;
+  double butt_crosscut_m = 35;  // between the crosscuts that join butts
+  int rooms = 6;                // on a side
+  bool both_sides = true;
+  double spacing_m = 12.5;  // between the rooms' centre lines
+  double spacing_sd_m = 0.3;
+  double width_m = 6.5;
+  double width_sd_m = 0.5;
+  double depth_m = 60;
+  double depth_sd_m = 8;
+  double neck_m = 5;
+  double neck_width_m = 3.5;
+  double through_spacing_m = 22;  // between breakthroughs from a room to the next
+  double through_width_m = 3.2;
+  double through_share = 0.8;  // of them that were driven
+};
+
+/// A part of a large mine: mains with a panel to either side at each pitch, barrier pillars between.
+struct DistrictSettings {
+  double length_m = 2000;  // of passages, reached by whole pitches
+  int mains = 4;           // entries of the mains
+  double main_spacing_m = 20;
+  int panel_entries = 3;
+  double panel_spacing_m = 20;
+  int panel_crosscuts = 4;
+  double crosscut_spacing_m = 28;
+  double spacing_sd_m = 0.5;
+  double barrier_m = 25;
+  double width_m = 5;
+  double missing_share = 0.1;  // of the crosscuts but the first and last of a panel
+  double stopping_share = 0.1;
 };
 
 /// What a surface's roughness is: self-affine with the Hurst exponent 0.7 below a correlation length.
@@ -31,13 +75,38 @@ struct RoughnessSettings {
   double rms_m, correlation_m;
 };
 
+/// What time and the cutting machine did to the faces. All are off by default.
+struct WearSettings {
+  double slough_m = 0;        // depth to which ribs have spalled at mid height, under the roof's brow
+  double slough_share = 0.6;  // of the ribs' length
+  double slough_length_m = 5;
+  double sag_m = 0;      // of the roof in the middle of passages, varying to nothing
+  double heave_m = 0;    // of the floor there
+  double bedding_m = 0;  // height of the steps where the roof broke to the next bedding plane
+  double scallop_m = 0;  // depth of the cutting drum's grooves in the ribs
+  double scallop_pitch_m = 0.45;
+};
+
+/// What the rock is and what lies on it; reflectivities are diffuse, at 905 nm.
+struct RockSettings {
+  double dust_share = 1;   // of the surfaces under rock dust, whose reflectivity is world.reflectivity
+  double coal = 0.07;      // ribs where bare
+  double shale = 0.22;     // roof where bare
+  double fireclay = 0.15;  // floor where bare
+  double wet_share = 0;    // of the surfaces that are wet, the floor first
+  double patch_m = 3;      // size of the patches of dust and water
+};
+
 /// A mine before chance: the keys of [world].
 struct WorldSettings {
-  std::string kind = "plan";                                    // plan | panel
-  std::string plan = "bruceton";                                // bundled name, or a JSON file of centre lines
-  std::string passages = "open";                                // of the plan: open | all (those walled off too)
+  std::string kind = "plan";      // plan | panel | rooms | district
+  std::string plan = "bruceton";  // bundled name, a JSON file of centre lines, or a GeoJSON file of
+                                  // polygons with pillars as holes
+  std::string passages = "open";  // of the plan: open | all (those walled off too)
   double x_min = -1e5, x_max = 1e5, y_min = -1e5, y_max = 1e5;  // the part of the plan that is made
   PanelSettings panel;
+  RoomSettings rooms;
+  DistrictSettings district;
 
   double width_scale = 1;        // on the widths that the plan tells
   double width_sd_m = 0.1;       // of a passage's width, drawn for each passage
@@ -54,6 +123,8 @@ struct WorldSettings {
   double roll_min_m = 40, roll_max_m = 150;  // their wavelengths
   RoughnessSettings floor{0.02, 0.5}, roof{0.02, 1.0}, rib{0.055, 0.55};
 
+  WearSettings wear;
+  RockSettings rock;
   double reflectivity = 0.45;  // diffuse, at 905 nm; rock-dusted
   double reflectivity_sd = 0.06;
   double mesh_edge_m = 0.2;
@@ -93,19 +164,32 @@ Fields fields(RouteSettings& settings);
 /// @throws Error for a junction, pillar or passage that is not there, two waypoints that are equal, a mine without loops in mode loops
 Route plan_route(const World& world, const RouteSettings& settings, std::uint64_t seed);
 
-/// What a mesh is found to be, by CGAL: nothing of it follows from how it was made.
+/// What a mesh is found to be, by exact predicates: nothing of it follows from how it was made.
 struct WorldCheck {
   bool closed = false;
+  size_t open_edges = 0;          // that do not join two faces in opposite directions
+  size_t pinched_vertices = 0;    // at which the surface only touches itself
   bool oriented = false;          // consistently, normals out of the enclosed volume
   size_t self_intersections = 0;  // pairs of faces
   size_t degenerate_faces = 0;    // corners on one line
   size_t unlabelled = 0;
   double volume_m3 = 0;
 
-  bool ok() const { return closed && oriented && self_intersections + degenerate_faces + unlabelled == 0; }
+  bool ok() const {
+    return closed && oriented && self_intersections + degenerate_faces + pinched_vertices + unlabelled == 0;
+  }
   /// One sentence.
   std::string what() const;
 };
 WorldCheck check_world(const World& world);
+
+/// Where a mine's truth does not fit its mesh, a sentence each: volumes, areas, labels, ids, loops, every number that
+/// the mesh tells as well. Empty = it fits.
+std::vector<std::string> check_truth(const World& world);
+
+/// The plan for other programs: DIR/plan.svg, plan.dxf (R12, metres, a layer each for void, pillars, centre lines,
+/// junctions), plan.geojson (metres; what world.plan reads again) and the occupancy grid plan.pgm, plan.yaml (ROS
+/// map_server; rock beyond the rims is unknown).
+void save_plan(const std::string& dir, const World& world);
 
 }  // namespace adit

@@ -190,5 +190,31 @@ TEST(Points, AFileGivesThePointsBackRoundedToFloat) {
     EXPECT_LE((back.p[i] - cloud.p[i]).cwiseAbs().maxCoeff(), cloud.p[i].cwiseAbs().maxCoeff() * 0x1p-24);
 }
 
+TEST(Mesh, PassageMaterialAndWetnessComeBackFromAFile) {
+  Mesh mesh = box_mesh({0, 0, 0}, {3, 2, 1});
+  for (size_t f = 0; f < mesh.face.size(); ++f) {
+    mesh.passage.push_back(static_cast<int>(f));
+    mesh.material.push_back(f % 2 ? Material::coal : Material::rock_dust);
+    mesh.wetness.push_back(static_cast<float>(f) / 16);
+  }
+  write_mesh(temporary("rock.ply"), mesh);
+  const Mesh back = read_mesh(temporary("rock.ply"));
+  expect_same(mesh, back);
+  EXPECT_EQ(back.passage, mesh.passage);
+  EXPECT_EQ(back.material, mesh.material);
+  EXPECT_EQ(back.wetness, mesh.wetness);
+}
+
+TEST(Mesh, AWavefrontFileIsReadWithPolygonsFannedAndIndicesFromEitherEnd) {
+  write_text(temporary("box.obj"),
+             "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nv 0 0 1\nv 2 0 1\nv 2 3 1\nv 0 3 1\n"
+             "f 4 3 2 1\nf 5/1/1 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf -6 -5 -1 -2\nf 4 1 5 8\n");
+  const Mesh box = read_mesh(temporary("box.obj"));
+  EXPECT_EQ(open_edges(box), 0u);
+  EXPECT_NEAR(enclosed_volume(box), 6, 1e-12);
+  write_text(temporary("bad.obj"), "v 0 0 0\nf 1 2 3\n");
+  EXPECT_NE(error_of([] { read_mesh(temporary("bad.obj")); }).find("bad.obj:2: no vertex '2'"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace adit
