@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace adit {
 
@@ -24,17 +25,32 @@ struct LaserModel {
       0;  // least diffuse reflectivity seen up to 4 m, growing as range^reflectivity_exponent beyond
   double reflectivity_exponent = 0;
 
+  // Least reflectivity by range as a chart; empty: the law of the two above.
+  std::vector<double> chart_range_m = {}, chart_reflectivity = {};
+
+  // What only a simulation asks for; a log does not hold it.
+  double curve_m = 0;                      // error of a device that swings with the range, at most
+  double energy_m = 0;                     // error between dark and bright targets, at most
+  double warm_up_m = 0, warm_up_s = 3600;  // error of a cold device, and the time in which it fades
+  bool codes = false;                      // tells why there is no range
+
   /// Direction of beam k in the scan plane, 0 = S's x axis.
   double beam_angle_rad(int k) const { return -fov_rad / 2 + fov_rad * k / (beams - 1); }
   /// When beam k leaves after the scan's stamp.
   double beam_offset_s(int k) const;
-  /// Least effective reflectivity, reflectivity * cos(incidence), that is noticed at a range: flat up to 4 m, then growing
-  /// by the model's power; 0 where the model states none.
+  /// Least effective reflectivity, reflectivity * cos(incidence), that is noticed at a range: by the chart, straight
+  /// between its points; without one flat up to 4 m, then growing by the model's power; 0 where the model states none.
   double least_reflectivity(double range_m) const;
 };
 
+/// A setting of a laser: names of its [[mode]] and [[raster]] tables; empty = what the file states at its top.
+struct LaserChoice {
+  std::string mode, raster;
+};
+
 /// A bundled laser by name, or one from a TOML file; baud > 0 sets interval_s by the serial link (SICK telegram
-/// listing, table of skipped scans). Errors name file and key; a rate that the link cannot carry is an error.
-LaserModel load_laser(const std::string& name_or_file, int baud);
+/// listing, table of skipped scans). Errors name file and key; a rate that the link cannot carry is an error, and so is a
+/// mode or a raster that the laser does not have.
+LaserModel load_laser(const std::string& name_or_file, int baud, const LaserChoice& choice = {});
 
 }  // namespace adit

@@ -33,6 +33,13 @@ constexpr LaserNumber laser_numbers[] = {
     {"reflectivity_exponent", &LaserModel::reflectivity_exponent},
 };
 
+// Besides no_echo and unreadable.
+constexpr std::pair<const char*, Code> code_names[] = {{"weak", Code::weak},
+                                                       {"beyond", Code::beyond},
+                                                       {"dazzled", Code::dazzled},
+                                                       {"overflow", Code::overflow},
+                                                       {"channel", Code::channel}};
+
 // Poses are stored as the upper three rows of their matrices.
 std::vector<double> flat(std::span<const Pose> poses) {
   std::vector<double> numbers;
@@ -57,16 +64,24 @@ double unit_mm(const LaserModel& laser) {
   return step_mm > 0.5 && std::abs(step_mm - std::round(step_mm)) < 1e-9 ? 1.0 : 1e-3;
 }
 
-std::int32_t to_stored(float range_m, double unit_mm) {
+std::int32_t to_stored(float range_m, Code code, double unit_mm) {
+  if (code != Code::range) return -static_cast<std::int32_t>(code);
   if (std::isnan(range_m)) return unreadable;
   const double steps = std::round(static_cast<double>(range_m) * 1e3 / unit_mm);
   if (!(steps < std::numeric_limits<std::int32_t>::max())) return no_echo;
   return static_cast<std::int32_t>(std::max(steps, 0.0));
 }
 
+Code code_of(std::int32_t value) {
+  if (value >= 0) return Code::range;
+  return value >= -static_cast<std::int32_t>(Code::channel) ? static_cast<Code>(-value) : Code::unreadable;
+}
+
 float from_stored(std::int32_t value, double unit_mm) {
-  if (value == no_echo) return std::numeric_limits<float>::infinity();
-  if (value < 0) return std::numeric_limits<float>::quiet_NaN();
+  const Code code = code_of(value);
+  if (code == Code::no_echo || code == Code::weak || code == Code::beyond)
+    return std::numeric_limits<float>::infinity();
+  if (code != Code::range) return std::numeric_limits<float>::quiet_NaN();
   return static_cast<float>(value * unit_mm * 1e-3);
 }
 
@@ -90,7 +105,17 @@ void save_rig(H5Writer& out, const Rig& rig) {
     for (const LaserNumber& number : laser_numbers) out.number(at, number.key, mount.laser.*number.value);
     out.number(at, "phase_s", mount.phase_s);
     out.array<double>(at + "/X_BS", flat({&mount.X_BS, 1}), {3, 4});
+    const LaserModel& m = mount.laser;
+    if (m.chart_range_m.empty()) continue;
+    out.array<double>(at + "/chart_range_m", m.chart_range_m, {m.chart_range_m.size()});
+    out.array<double>(at + "/chart_reflectivity", m.chart_reflectivity, {m.chart_reflectivity.size()});
   }
+}
+
+// Arrays that came to the layout later, or that only some recordings have.
+bool has(const H5Reader& in, const std::string& group, const std::string& name) {
+  const std::vector<std::string> there = in.names(group);
+  return std::find(there.begin(), there.end(), name) != there.end();
 }
 
 Rig load_rig(const H5Reader& in) {
@@ -115,6 +140,10 @@ Rig load_rig(const H5Reader& in) {
     for (const LaserNumber& number : laser_numbers) mount.laser.*number.value = in.number(at, number.key);
     mount.phase_s = in.number(at, "phase_s");
     mount.X_BS = poses_of(in.array<double>(at + "/X_BS", {3, 4}))[0];
+    if (!has(in, at, "chart_range_m")) continue;
+    const Shape points = in.shape(at + "/chart_range_m");
+    mount.laser.chart_range_m = in.array<double>(at + "/chart_range_m", points);
+    mount.laser.chart_reflectivity = in.array<double>(at + "/chart_reflectivity", points);
   }
   return rig;
 }
@@ -123,13 +152,15 @@ void save_scans(H5Writer& out, const Mount& mount, const Scans& scans) {
   const std::string at = "/scans/" + mount.name;
   const double unit = unit_mm(mount.laser);
   std::vector<std::int32_t> ranges(scans.range_m.size());
-  for (size_t i = 0; i < ranges.size(); ++i) ranges[i] = to_stored(scans.range_m[i], unit);
+  for (size_t i = 0; i < ranges.size(); ++i)
+    ranges[i] = to_stored(scans.range_m[i], scans.code.empty() ? Code::range : scans.code[i], unit);
   out.group(at);
   out.array<double>(at + "/stamp_s", scans.stamp_s, {scans.size()});
   out.array<std::int32_t>(at + "/ranges_mm", ranges, {scans.size(), static_cast<std::uint64_t>(scans.beams)});
   out.number(at + "/ranges_mm", "unit_mm", unit);
   out.integer(at + "/ranges_mm", "no_echo", no_echo);
   out.integer(at + "/ranges_mm", "unreadable", unreadable);
+  for (const auto& [name, code] : code_names) out.integer(at + "/ranges_mm", name, -static_cast<std::int64_t>(code));
 }
 
 Scans load_scans(const H5Reader& in, const Mount& mount) {
@@ -147,6 +178,10 @@ Scans load_scans(const H5Reader& in, const Mount& mount) {
   const auto stored = in.array<std::int32_t>(at + "/ranges_mm", {size[0], static_cast<std::uint64_t>(scans.beams)});
   scans.range_m.resize(stored.size());
   for (size_t i = 0; i < stored.size(); ++i) scans.range_m[i] = from_stored(stored[i], unit);
+  if (in.has_attribute(at + "/ranges_mm", "dazzled")) {
+    scans.code.resize(stored.size());
+    for (size_t i = 0; i < stored.size(); ++i) scans.code[i] = code_of(stored[i]);
+  }
   return scans;
 }
 
@@ -197,6 +232,8 @@ void save_scan_truth(H5Writer& out, const Mount& mount, const ScanTruth& truth) 
   out.array<std::int32_t>(at + "/part", truth.part, shape);
   out.array<float>(at + "/incidence", truth.incidence_rad, shape);
   out.array<std::int32_t>(at + "/face", truth.face, shape);
+  if (!truth.surfaces.empty()) out.array<std::uint8_t>(at + "/surfaces", truth.surfaces, shape);
+  if (!truth.fault.empty()) out.array<std::uint8_t>(at + "/fault", truth.fault, shape);
 }
 
 ScanTruth load_scan_truth(const H5Reader& in, const Mount& mount) {
@@ -211,6 +248,8 @@ ScanTruth load_scan_truth(const H5Reader& in, const Mount& mount) {
   truth.part = in.array<std::int32_t>(at + "/part", size);
   truth.incidence_rad = in.array<float>(at + "/incidence", size);
   truth.face = in.array<std::int32_t>(at + "/face", size);
+  if (has(in, at, "surfaces")) truth.surfaces = in.array<std::uint8_t>(at + "/surfaces", size);
+  if (has(in, at, "fault")) truth.fault = in.array<std::uint8_t>(at + "/fault", size);
   return truth;
 }
 

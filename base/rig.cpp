@@ -25,7 +25,7 @@ int find_view(const Rig& rig, View view) {
   return -1;
 }
 
-Rig load_rig(const std::string& name_or_file, int baud) {
+Rig load_rig(const std::string& name_or_file, int baud, const LaserChoice& choice) {
   const Document file = Document::find("sensors/rigs", name_or_file);
   Rig rig;
   file.read({{"name", &rig.name, "how reports call it"}}, {"laser"});
@@ -35,8 +35,11 @@ Rig load_rig(const std::string& name_or_file, int baud) {
     std::string model = "lms200";
     std::vector<double> position_m{0, 0, 0};
     double yaw_deg = 0, pitch_deg = 0, roll_deg = 0;
+    LaserChoice own;
     table.read({{"name", &mount.name, "unique in the rig"},
                 {"model", &model, "a bundled laser or a file"},
+                {"mode", &own.mode, "range mode of the model"},
+                {"raster", &own.raster, "sector and step of the model"},
                 {"position_m", &position_m, "x, y, z of the mirror in the body frame"},
                 {"yaw_deg", &yaw_deg, "turn about z, first", -360, 360},
                 {"pitch_deg", &pitch_deg, "then about y; positive looks down", -360, 360},
@@ -46,7 +49,9 @@ Rig load_rig(const std::string& name_or_file, int baud) {
       if (other.name == mount.name) table.fail("name", "is '" + mount.name + "' a second time in this rig");
     if (position_m.size() != 3) table.fail("position_m", "must be three numbers, [x, y, z]");
     constexpr double deg = std::numbers::pi / 180;
-    mount.laser = load_laser(model, baud);
+    if (!choice.mode.empty()) own.mode = choice.mode;
+    if (!choice.raster.empty()) own.raster = choice.raster;
+    mount.laser = load_laser(model, baud, own);
     mount.X_BS = pose_of({position_m[0], position_m[1], position_m[2]}, yaw_deg * deg, pitch_deg * deg, roll_deg * deg);
     rig.mounts.push_back(std::move(mount));
   }

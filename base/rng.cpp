@@ -25,11 +25,7 @@ Block philox(Block x, std::uint32_t k0, std::uint32_t k1) {
 
 // The counter is (i, j), the key the seed; the draw is mixed into both words of the key by two rounds of its own.
 Block block_at(std::uint64_t seed, Draw draw, std::uint64_t i, std::uint64_t j) {
-  const Block key = philox({static_cast<std::uint32_t>(draw), 0x61646974u, 0, 0}, static_cast<std::uint32_t>(seed),
-                           static_cast<std::uint32_t>(seed >> 32));
-  return philox({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i >> 32), static_cast<std::uint32_t>(j),
-                 static_cast<std::uint32_t>(j >> 32)},
-                key[0], key[1]);
+  return Draws(seed, draw).at(i, j);
 }
 
 double to_unit(std::uint64_t bits) {
@@ -37,6 +33,19 @@ double to_unit(std::uint64_t bits) {
 }
 
 }  // namespace
+
+Draws::Draws(std::uint64_t seed, Draw draw) {
+  const Block key = philox({static_cast<std::uint32_t>(draw), 0x61646974u, 0, 0}, static_cast<std::uint32_t>(seed),
+                           static_cast<std::uint32_t>(seed >> 32));
+  key_[0] = key[0];
+  key_[1] = key[1];
+}
+
+std::array<std::uint32_t, 4> Draws::at(std::uint64_t i, std::uint64_t j) const {
+  return philox({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i >> 32), static_cast<std::uint32_t>(j),
+                 static_cast<std::uint32_t>(j >> 32)},
+                key_[0], key_[1]);
+}
 
 std::uint64_t random_bits(std::uint64_t seed, Draw draw, std::uint64_t i, std::uint64_t j) {
   const Block b = block_at(seed, draw, i, j);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace adit {
@@ -32,6 +33,11 @@ enum class Draw : std::uint32_t {
   eval_sample,
   bootstrap,
   ground_relief,
+  beam_chance,
+  beam_stray,
+  laser_curve,
+  laser_warm_up,
+  fault_loss,
 };
 
 /// Random numbers have addresses, not an order: the same (seed, draw, i, j) always gives the same number.
@@ -41,5 +47,16 @@ std::uint64_t random_bits(std::uint64_t seed, Draw draw, std::uint64_t i, std::u
 double uniform(std::uint64_t seed, Draw draw, std::uint64_t i, std::uint64_t j = 0);
 /// Mean 0, sd 1 (Box-Muller on one address).
 double normal(std::uint64_t seed, Draw draw, std::uint64_t i, std::uint64_t j = 0);
+
+/// The numbers of one draw of one seed, where many are needed at a time.
+class Draws {
+ public:
+  Draws(std::uint64_t seed, Draw draw);
+  /// Four independent words of 32 bits at an address; the first two are random_bits.
+  std::array<std::uint32_t, 4> at(std::uint64_t i, std::uint64_t j) const;
+
+ private:
+  std::uint32_t key_[2];
+};
 
 }  // namespace adit

@@ -4,6 +4,7 @@
 #include "base/bundled.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "cli/convert.h"
 #include "cli/scenario.h"
 #include "cli/scores.h"
 #include "cli/stages.h"
@@ -87,7 +88,7 @@ RunFolder load_run(const std::string& out, const Common& common) {
 int run_command(const std::string& scenario, const Common& common, Console& console) {
   const Scenario s = scenario_of(scenario, common);
   load_vehicle(s.vehicle);
-  load_rig(s.sensors.rig, s.sensors.baud);
+  load_rig(s.sensors.rig, s.sensors.baud, {s.sensors.mode, s.sensors.raster});
   Stages stages(out_of(common, s.name), console);
   const World world = stages.world(s);
   const Stages::Driven driven = stages.drive(s, world);
@@ -156,7 +157,7 @@ int check_command(const std::string& given, Console& console) {
 int drive_command(const std::string& scenario, const std::string& world_dir, const Common& common, Console& console) {
   const Scenario s = scenario_of(scenario, common);
   load_vehicle(s.vehicle);
-  load_rig(s.sensors.rig, s.sensors.baud);
+  load_rig(s.sensors.rig, s.sensors.baud, {s.sensors.mode, s.sensors.raster});
   Stages stages(out_of(common, s.name), console);
   const World world = world_dir.empty() ? stages.world(s) : load_world(world_dir);
   const Stages::Driven driven = stages.drive(s, world);
@@ -174,7 +175,7 @@ int drive_command(const std::string& scenario, const std::string& world_dir, con
 int map_command(const std::string& recording, const Common& common, Console& console) {
   Scenario s;
   for (const std::string& a : common.assignments) set_field(fields(s), a);
-  const Log log = load_log(recording);
+  const Log log = load_any_log(recording);
   Stages stages(out_of(common, fs::path(recording).stem().string()), console);
   stages.map(s.map, log);
   stages.save_timing();

@@ -2,6 +2,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "cli/commands.h"
+#include "cli/convert.h"
+#include "cli/rig_picture.h"
 
 #include <CLI/CLI.hpp>
 
@@ -17,8 +19,8 @@ namespace {
 struct Words {
   adit::Common common;
   bool quiet = false, json = false;
-  int threads = 0;
-  std::string first, second, world, check;
+  int threads = 0, every = 1;
+  std::string first, second, world, truth, check;
   adit::ScoreInput score;
   std::vector<std::string> outs;
 };
@@ -45,6 +47,8 @@ int dispatch(CLI::App& app, const Words& w) {
   if (app.got_subcommand("compare")) return compare_command(w.outs, w.common, console);
   if (app.got_subcommand("report")) return report_command(w.outs, w.common, console);
   if (app.got_subcommand("render")) return render_command(w.first, w.second, w.common, console);
+  if (app.got_subcommand("convert")) return convert_command(w.first, w.second, w.truth, w.every, console);
+  if (app.got_subcommand("rig")) return rig_command(w.first, w.common, console);
   if (app.got_subcommand("list")) return list_command(w.first, console);
   return help_command(w.first, console);
 }
@@ -80,7 +84,7 @@ void add_commands(CLI::App& app, Words& w) {
   drive->add_option("--world", w.world, "folder of a mine made before");
   add_common(drive, w, true);
   CLI::App* map = app.add_subcommand("map", "a map from a recording alone");
-  map->add_option("recording", w.first, "log.h5")->required();
+  map->add_option("recording", w.first, "log.h5, or a CARMEN log (.log, .clf)")->required();
   add_common(map, w, false);
   add_score(app, w);
   CLI::App* compare = app.add_subcommand("compare", "many runs: medians, intervals, paired differences, failures");
@@ -93,6 +97,15 @@ void add_commands(CLI::App& app, Words& w) {
   render->add_option("run", w.first, "folder of a run")->required();
   render->add_option("view", w.second, "one of 'adit list views'")->required();
   add_common(render, w, false);
+  CLI::App* convert = app.add_subcommand("convert", "a recording, a path or a cloud in another format");
+  convert->add_option("from", w.first, ".h5, CARMEN .log or .clf, .tum, .ply, .pcd")->required();
+  convert->add_option("to", w.second, "the same, or a folder in SemanticKITTI's layout")->required();
+  convert->add_option("--truth", w.truth, "truth.h5 of the recording; else the one beside it");
+  convert->add_option("--every", w.every, "of clouds: every so many scans")->check(CLI::Range(1, 1000000));
+  add_common(convert, w, false);
+  CLI::App* rig = app.add_subcommand("rig", "pictures of a rig with its fans in a passage");
+  rig->add_option("rig", w.first, "bundled name or TOML file")->required();
+  add_common(rig, w, false);
   CLI::App* list = app.add_subcommand("list", "what is bundled");
   list->add_option("what", w.first, "scenarios, vehicles, rigs, lasers, views or metrics");
   add_common(list, w, false);

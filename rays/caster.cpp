@@ -67,7 +67,35 @@ struct Caster::Impl {
     const double exact = n.dot(a - ray.origin) / slope;
     // Seen edge-on the plane says nothing; then the float stands.
     const bool sound = std::isfinite(exact) && std::abs(exact - range) < 1e-3 * (1 + range);
-    return {sound ? exact : range, static_cast<std::int32_t>(face)};
+    return {sound ? exact : range, static_cast<std::int32_t>(face), slope / n.norm()};
+  }
+
+  // What up to 16 rays meet; the lanes beyond them stay empty.
+  void intersect(std::span<const Ray> rays, RTCRayHit16& packet) const {
+    alignas(64) int valid[16];
+    for (size_t k = 0; k < 16; ++k) {
+      const Ray& ray = rays[std::min(k, rays.size() - 1)];
+      const Vec3 o = ray.origin - middle;
+      valid[k] = k < rays.size() ? -1 : 0;
+      packet.ray.org_x[k] = static_cast<float>(o.x());
+      packet.ray.org_y[k] = static_cast<float>(o.y());
+      packet.ray.org_z[k] = static_cast<float>(o.z());
+      packet.ray.dir_x[k] = static_cast<float>(ray.direction.x());
+      packet.ray.dir_y[k] = static_cast<float>(ray.direction.y());
+      packet.ray.dir_z[k] = static_cast<float>(ray.direction.z());
+      packet.ray.tnear[k] = 0;
+      packet.ray.tfar[k] = static_cast<float>(ray.far_m);
+      packet.ray.time[k] = 0;
+      packet.ray.mask[k] = ~0u;
+      packet.ray.id[k] = 0;
+      packet.ray.flags[k] = 0;
+      packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+      packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, &context, &packet);
   }
 };
 
@@ -112,38 +140,32 @@ Hit Caster::nearest(const Ray& ray) const {
 
 void Caster::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
   ADIT_CHECK(rays.size() == hits.size());
-  const Impl& m = *impl_;
+  alignas(64) RTCRayHit16 packet;
   for (size_t begin = 0; begin < rays.size(); begin += 16) {
     const size_t n = std::min<size_t>(16, rays.size() - begin);
-    alignas(64) RTCRayHit16 packet;
-    alignas(64) int valid[16];
-    for (size_t k = 0; k < 16; ++k) {
-      const Ray& ray = rays[begin + std::min(k, n - 1)];
-      const Vec3 o = ray.origin - m.middle;
-      valid[k] = k < n ? -1 : 0;
-      packet.ray.org_x[k] = static_cast<float>(o.x());
-      packet.ray.org_y[k] = static_cast<float>(o.y());
-      packet.ray.org_z[k] = static_cast<float>(o.z());
-      packet.ray.dir_x[k] = static_cast<float>(ray.direction.x());
-      packet.ray.dir_y[k] = static_cast<float>(ray.direction.y());
-      packet.ray.dir_z[k] = static_cast<float>(ray.direction.z());
-      packet.ray.tnear[k] = 0;
-      packet.ray.tfar[k] = static_cast<float>(ray.far_m);
-      packet.ray.time[k] = 0;
-      packet.ray.mask[k] = ~0u;
-      packet.ray.id[k] = 0;
-      packet.ray.flags[k] = 0;
-      packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-      packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-    }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(valid, m.scene, &context, &packet);
+    impl_->intersect(rays.subspan(begin, n), packet);
     for (size_t k = 0; k < n; ++k)
       hits[begin + k] = packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
                             ? Hit{infinity, -1}
-                            : m.refined(rays[begin + k], packet.hit.primID[k], packet.ray.tfar[k]);
+                            : impl_->refined(rays[begin + k], packet.hit.primID[k], packet.ray.tfar[k]);
+  }
+}
+
+void Caster::glance(std::span<const Ray> rays, std::span<Glance> glances) const {
+  ADIT_CHECK(rays.size() == glances.size());
+  alignas(64) RTCRayHit16 packet;
+  for (size_t begin = 0; begin < rays.size(); begin += 16) {
+    const size_t n = std::min<size_t>(16, rays.size() - begin);
+    impl_->intersect(rays.subspan(begin, n), packet);
+    for (size_t k = 0; k < n; ++k) {
+      // Embree's normal is not of unit length; like ours it looks out of a face that is counter-clockwise.
+      const float x = packet.hit.Ng_x[k], y = packet.hit.Ng_y[k], z = packet.hit.Ng_z[k];
+      const float along = x * packet.ray.dir_x[k] + y * packet.ray.dir_y[k] + z * packet.ray.dir_z[k];
+      const bool met = packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
+      glances[begin + k] = {met ? packet.ray.tfar[k] : std::numeric_limits<float>::infinity(),
+                            met ? static_cast<std::int32_t>(packet.hit.primID[k]) : -1,
+                            met ? along / std::sqrt(x * x + y * y + z * z) : 0.0F};
+    }
   }
 }
 

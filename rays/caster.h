@@ -19,6 +19,14 @@ struct Ray {
 struct Hit {
   double range_m;          // +inf: nothing met
   std::int32_t face = -1;  // of the mesh, -1: nothing met
+  double cosine = 0;       // between the ray and the face's normal; > 0 where it is met from within the enclosed volume
+};
+
+/// The same to the accuracy of floats: within 5e-5 m a few hundred metres from the middle of the mesh.
+struct Glance {
+  float range_m;  // +inf: nothing met
+  std::int32_t face;
+  float cosine;
 };
 
 struct Closest {
@@ -43,6 +51,8 @@ class Caster {
   /// hits[i] belongs to rays[i]. Fastest where neighbours in the span are neighbours in space (beams of one fan in
   /// order).
   void nearest(std::span<const Ray> rays, std::span<Hit> hits) const;
+  /// At three quarters of its cost, for rays of which there are many.
+  void glance(std::span<const Ray> rays, std::span<Glance> glances) const;
   /// Nearest point of the surface within radius_m. With `seen_along` only faces that a beam in that direction can meet
   /// from within the enclosed volume count (normal . seen_along > 0), so that a thin wall does not lend its far face.
   std::optional<Closest> closest(const Vec3& p, double radius_m, const std::optional<Vec3>& seen_along = {}) const;

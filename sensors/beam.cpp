@@ -31,12 +31,15 @@ BoxHit enter(const Box& box, const Vec3& origin, const Vec3& direction) {
 
 }  // namespace
 
-Meeting meeting_of(const Mesh& mesh, const Ray& ray, const Hit& hit, double default_reflectivity) {
+double Meeting::incidence_rad() const {
+  return std::acos(std::min(cosine, 1.0));
+}
+
+Meeting meeting_of(const Mesh& mesh, const Hit& hit, double default_reflectivity) {
   if (hit.face < 0) return {};
   const size_t f = static_cast<size_t>(hit.face);
-  const double cosine = std::abs(mesh.normal(f).dot(ray.direction));
   return {.range_m = hit.range_m,
-          .incidence_rad = std::acos(std::min(cosine, 1.0)),
+          .cosine = std::abs(hit.cosine),
           .reflectivity = mesh.reflectivity.empty() ? default_reflectivity : mesh.reflectivity[f],
           .label = mesh.label.empty() ? Label::none : mesh.label[f],
           .part = mesh.part.empty() ? -1 : mesh.part[f],
@@ -49,21 +52,11 @@ Meeting meet_hull(const Hull& hull, const Vec3& origin_B, const Vec3& direction_
     const BoxHit hit = enter(box, origin_B, direction_B);
     if (hit.axis < 0 || hit.range_m >= nearest.range_m) continue;
     nearest.range_m = hit.range_m;
-    nearest.incidence_rad = std::acos(std::min(std::abs(direction_B[hit.axis]), 1.0));
+    nearest.cosine = std::abs(direction_B[hit.axis]);
     nearest.reflectivity = reflectivity;
     nearest.label = box.label;
   }
   return nearest;
-}
-
-std::vector<Meeting> own_shadow(const Hull& hull, const Mount& mount, double reflectivity) {
-  std::vector<Meeting> shadow(static_cast<size_t>(mount.laser.beams));
-  for (int k = 0; k < mount.laser.beams; ++k) {
-    const double a = mount.laser.beam_angle_rad(k);
-    const Vec3 direction_B = mount.X_BS.linear() * Vec3(std::cos(a), std::sin(a), 0);
-    shadow[k] = meet_hull(hull, mount.X_BS.translation(), direction_B, reflectivity);
-  }
-  return shadow;
 }
 
 }  // namespace adit

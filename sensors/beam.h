@@ -15,20 +15,21 @@ namespace adit {
 /// What one beam truly met.
 struct Meeting {
   double range_m = std::numeric_limits<double>::infinity();  // +inf: nothing
-  double incidence_rad = 0;                                  // between beam and surface normal, 0..pi/2
+  double cosine = 1;                                         // of the incidence, between beam and surface normal
   double reflectivity = 0;
   Label label = Label::none;
   std::int32_t part = -1;
   std::int32_t face = -1;  // of the world's mesh; -1: the hull or nothing
+
+  /// Between beam and surface normal, 0..pi/2.
+  double incidence_rad() const;
+  double effective_reflectivity() const { return reflectivity * cosine; }
 };
 
 /// What a ray of the world met, of which `hit` is known.
-Meeting meeting_of(const Mesh& mesh, const Ray& ray, const Hit& hit, double default_reflectivity);
+Meeting meeting_of(const Mesh& mesh, const Hit& hit, double default_reflectivity);
 
 /// What a ray in B meets of a vehicle's boxes. A box that holds the ray's origin is passed over.
 Meeting meet_hull(const Hull& hull, const Vec3& origin_B, const Vec3& direction_B, double reflectivity);
-
-/// The same for every beam of a mount: both are fixed in B, so it holds for every scan. (beams)
-std::vector<Meeting> own_shadow(const Hull& hull, const Mount& mount, double reflectivity);
 
 }  // namespace adit

@@ -4,6 +4,7 @@
 #include "base/error.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace adit {
 
@@ -16,8 +17,13 @@ void Motion::enter(size_t stretch) {
   stretch_ = stretch;
   const Eigen::AngleAxisd turn(
       Eigen::Matrix3d(path_->X_WB[stretch].linear().transpose() * path_->X_WB[stretch + 1].linear()));
-  axis_ = turn.axis();
+  const Vec3 a = turn.axis();
+  Eigen::Matrix3d K;
+  K << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
   angle_rad_ = turn.angle();
+  R_ = path_->X_WB[stretch].linear();
+  RK_ = R_ * K;
+  RKK_ = RK_ * K;
 }
 
 Pose Motion::at(double t_s) {
@@ -31,7 +37,12 @@ Pose Motion::at(double t_s) {
   const double s = std::clamp((t_s - from_s) / span_s, 0.0, 1.0);
   const Pose &A = path_->X_WB[stretch_], &B = path_->X_WB[stretch_ + 1];
   Pose X = Pose::Identity();
-  X.linear() = A.linear() * Eigen::AngleAxisd(s * angle_rad_, axis_).toRotationMatrix();
+  // Within one stretch a vehicle turns by so little that four terms of the series are exact.
+  const double angle = s * angle_rad_, q = angle * angle;
+  const bool little = q < 0.01;
+  const double sine = little ? angle * (1 - q / 6 * (1 - q / 20 * (1 - q / 42))) : std::sin(angle);
+  const double versine = little ? q / 2 * (1 - q / 12 * (1 - q / 30 * (1 - q / 56))) : 1 - std::cos(angle);
+  X.linear() = R_ + sine * RK_ + versine * RKK_;
   X.translation() = (1 - s) * A.translation() + s * B.translation();
   return X;
 }

@@ -19,8 +19,9 @@ class Motion {
 
   const Trajectory* path_;
   size_t stretch_ = 0;  // between poses stretch_ and stretch_ + 1
-  Vec3 axis_ = Vec3::UnitX();
   double angle_rad_ = 0;
+  // R(angle) = R + sin(angle) RK + (1 - cos(angle)) RKK, with K the cross product by the axis (Rodrigues).
+  Eigen::Matrix3d R_, RK_, RKK_;
 };
 
 }  // namespace adit

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "base/laser.h"
+#include "base/recording.h"
 #include "base/rig.h"
-#include "sensors/beam.h"
+#include "sensors/chance.h"
+#include "sensors/device.h"
+#include "sensors/echo.h"
 #include "sensors/settings.h"
 
 #include <cstdint>
+#include <span>
 
 namespace adit {
 
@@ -18,15 +21,22 @@ struct BeamAddress {
 };
 std::uint64_t scan_address(size_t mount, size_t scan);
 
-/// The range that a device tells of what its beam met. +inf = no echo, NaN = unreadable.
-float reading(const LaserModel& model, const Meeting& meeting, double bias_m, const SensorSettings& settings,
-              const BeamAddress& address);
+/// What a device tells of one beam.
+struct Reading {
+  float range_m;  // +inf: no echo, NaN: unreadable
+  Code code = Code::range;
+  std::uint8_t surfaces = 0;  // that the spot fell on
+  std::uint8_t fault = 0;     // bits of `trouble`
+};
 
-/// Constant error of the device at a mount, metres, evenly within the model's band; 0 when switched off.
-double device_bias_m(const LaserModel& model, size_t mount, const SensorSettings& settings, std::uint64_t seed);
+/// @param returns        of the beam's spot, one where it is taken for its axis; reordered
+/// @param incidence_rad  of the axis, for the smear of a spot that is taken for its axis
+/// @param on_s           since the device was switched on
+Reading reading(const Device& device, std::span<Return> returns, double incidence_rad, const SensorSettings& settings,
+                const Chance& chance, const BeamAddress& address, double on_s);
 
 /// How far a beam's direction errs within the scan plane.
-double beam_angle_error_rad(const SensorSettings& settings, const BeamAddress& address);
+double beam_angle_error_rad(const SensorSettings& settings, const Chance& chance);
 
 /// The rig as it truly is: mounts moved in their own frames by the settings' errors, each laser with a phase of its
 /// own.

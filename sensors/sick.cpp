@@ -9,16 +9,16 @@
 namespace adit {
 
 double detection_chance(const LaserModel& model, double effective_reflectivity, double range_m, double spread) {
-  if (model.reflectivity_at_4m <= 0) return 1;
+  const double least = model.least_reflectivity(range_m);
+  if (least <= 0) return 1;
   if (effective_reflectivity <= 0) return 0;
-  return 1 / (1 + std::exp(-std::log(effective_reflectivity / model.least_reflectivity(range_m)) / spread));
+  return 1 / (1 + std::exp(-std::log(effective_reflectivity / least) / spread));
 }
 
-double range_sigma_m(const LaserModel& model, double effective_reflectivity, double range_m) {
+double range_sigma_m(const LaserModel& model, double weakness) {
   // Echoes below half of the threshold are not noticed; the law is not carried further.
   constexpr double weakest = 2;
-  const double ratio = model.least_reflectivity(range_m) / std::max(effective_reflectivity, 1e-12);
-  return model.sigma_m * std::hypot(1.0, std::min(ratio, weakest));
+  return model.sigma_m * std::hypot(1.0, std::min(weakness, weakest));
 }
 
 double footprint_sigma_m(const LaserModel& model, double range_m, double incidence_rad) {

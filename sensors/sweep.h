@@ -4,14 +4,20 @@
 #include "base/drive.h"
 #include "base/hull.h"
 #include "base/recording.h"
+#include "base/rng.h"
 #include "rays/caster.h"
-#include "sensors/beam.h"
+#include "sensors/device.h"
+#include "sensors/echo.h"
+#include "sensors/fan.h"
 #include "sensors/settings.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace adit {
+
+class Motion;
 
 /// When the scans of a mount truly begin: from begin_s + phase, an interval apart, later by whole mirror scans where
 /// the link loses some. The last one ends before end_s.
@@ -30,7 +36,14 @@ class Sweep {
   void fire(size_t begin, size_t end, Scans& scans, ScanTruth& truth) const;
 
  private:
-  void aim(double time_s, size_t scan, std::vector<Ray>& rays) const;
+  struct Shot;  // what one scan needs on its way
+
+  void aim(double time_s, std::uint64_t scan, Motion& motion, Shot& shot) const;
+  void cast(Shot& shot) const;
+  Meeting axis_meeting(size_t beam, const Shot& shot) const;
+  bool gather(size_t beam, const Meeting& axis, Shot& shot) const;
+  void tell(size_t beam, size_t scan, Shot& shot, Scans& scans, ScanTruth& truth) const;
+  void dazzle(size_t scan, Scans& scans, const ScanTruth& truth) const;
 
   const Caster* caster_;
   const Trajectory* path_;
@@ -38,9 +51,11 @@ class Sweep {
   size_t index_;
   const SensorSettings* settings_;
   std::uint64_t seed_;
-  double bias_m_;
-  std::vector<Meeting> shadow_;           // (beams) what each meets of its own vehicle
-  std::vector<double> angle_, offset_s_;  // (beams)
+  Draws draws_;
+  Device device_;
+  Bundle bundle_;
+  MountFan fan_;
+  std::optional<Label> water_;
 };
 
 }  // namespace adit

@@ -79,6 +79,10 @@ Truth small_truth() {
       s.incidence_rad.push_back(0.01f * i);
       s.face.push_back(1000 * i - 1);
     }
+    if (truth.scans.empty()) {  // the other laser's file lacks them
+      s.surfaces.assign(s.range_m.size(), 2);
+      s.fault.assign(s.range_m.size(), trouble::dust);
+    }
     truth.scans.push_back(s);
   }
   return truth;
@@ -128,6 +132,24 @@ TEST(Recording, ALogComesBackAsItWas) {
   }
 }
 
+TEST(Recording, CodesComeBackAndOldFilesHaveNone) {
+  Log log = small_log(3);
+  constexpr Code codes[] = {Code::range,  Code::no_echo, Code::unreadable, Code::weak,
+                            Code::beyond, Code::dazzled, Code::overflow,   Code::channel};
+  Scans& s = log.scans[0];
+  s.code.assign(s.range_m.size(), Code::range);
+  s.range_m.assign(s.range_m.size(), 2);
+  for (size_t i = 1; i < 8; ++i) {
+    s.code[i] = codes[i];
+    s.range_m[i] = i == 1 || i == 3 || i == 4 ? none : unread;  // nothing heard, or not readable
+  }
+  save_log(in_folder("codes.h5"), log);
+  const Scans back = load_log(in_folder("codes.h5")).scans[0];
+  EXPECT_EQ(back.code, s.code);
+  for (size_t i = 0; i < s.range_m.size(); ++i)
+    EXPECT_TRUE(back.range_m[i] == s.range_m[i] || (std::isnan(back.range_m[i]) && std::isnan(s.range_m[i]))) << i;
+}
+
 TEST(Recording, ALogOfNoScansComesBack) {
   save_log(in_folder("none.h5"), small_log(0));
   EXPECT_EQ(load_log(in_folder("none.h5")).scans[1].size(), 0u);
@@ -155,6 +177,8 @@ TEST(Recording, ATruthComesBackAsItWas) {
     EXPECT_EQ(truth.scans[i].part, back.scans[i].part);
     EXPECT_EQ(truth.scans[i].incidence_rad, back.scans[i].incidence_rad);
     EXPECT_EQ(truth.scans[i].face, back.scans[i].face);
+    EXPECT_EQ(truth.scans[i].surfaces, back.scans[i].surfaces);
+    EXPECT_EQ(truth.scans[i].fault, back.scans[i].fault);
   }
 }
 

@@ -20,6 +20,49 @@ TEST(Laser, Lms200FiresAHalfDegreeScanInTwoTurnsAndTheLinkThinsIt) {
   EXPECT_THROW(load_laser("lms200", 4800), Error);
 }
 
+TEST(Laser, AModeRasterOrRateThatTheModelLacksIsAnErrorThatListsWhatItHas) {
+  const auto error_of = [](int baud, const LaserChoice& choice) -> std::string {
+    try {
+      load_laser("lms200", baud, choice);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(error_of(38400, {"64m", ""}), ::testing::HasSubstr("has no mode '64m'; it has 8m, 16m, 32m, 80m"));
+  EXPECT_THAT(error_of(38400, {"", "180/0.1"}), ::testing::HasSubstr("has no raster '180/0.1'; it has 180/1"));
+  EXPECT_THAT(error_of(38400, {"", "180/0.25"}), ::testing::HasSubstr("has no rate of 38400 Bd; it has 500000"));
+  EXPECT_EQ(error_of(38400, {"8m", "100/0.25"}), "no error");
+}
+
+TEST(Laser, AChartMustGrowAndBePositive) {
+  const std::string file = ::testing::TempDir() + "adit_laser.toml";
+  const auto refused = [&](const std::string& text) {
+    write_text(file, text);
+    try {
+      load_laser(file, 0);
+    } catch (const Error&) {
+      return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(refused("chart_range_m = [1.0, 2.0]\nchart_reflectivity = [0.1, 0.2]\n"));
+  EXPECT_TRUE(refused("chart_range_m = [2.0, 1.0]\nchart_reflectivity = [0.1, 0.2]\n"));
+  EXPECT_TRUE(refused("chart_range_m = [1.0, 2.0]\nchart_reflectivity = [0.1]\n"));
+  EXPECT_TRUE(refused("chart_range_m = [1.0, 2.0]\nchart_reflectivity = [0.1, 0.0]\n"));
+}
+
+TEST(Rig, AModeAndARasterAreChosenByTheTableOrForAll) {
+  const std::string file = ::testing::TempDir() + "adit_rig_mode.toml";
+  write_text(file, "[[laser]]\nname = 'a'\nmode = '8m'\n[[laser]]\nname = 'b'\nraster = '180/1'\n");
+  const Rig own = load_rig(file, 38400), all = load_rig(file, 38400, {"16m", ""});
+  EXPECT_EQ(own.mounts[0].laser.range_max_m, 8.183);
+  EXPECT_EQ(own.mounts[1].laser.beams, 181);
+  EXPECT_EQ(all.mounts[0].laser.range_max_m, 16.375);
+  EXPECT_EQ(all.mounts[1].laser.range_max_m, 16.375);
+  EXPECT_EQ(all.mounts[1].laser.beams, 181);
+}
+
 TEST(Rig, Cart4HasOneLaserForEachView) {
   const Rig rig = load_rig("cart4", 38400);
   for (View v : {View::horizontal, View::forward_vertical, View::up, View::down}) EXPECT_GE(find_view(rig, v), 0);

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <string>
 
 namespace adit {
@@ -107,6 +108,36 @@ TEST_F(TinyRun, MappingNeedsNoTruth) {
   ASSERT_EQ(said.exit_code, 0) << said.err;
   for (const char* file : {"trajectory.tum", "grid.pgm", "points.ply", "surface.ply", "map.json"})
     EXPECT_TRUE(read_text(dir + "/map/" + file) == read_text(out_ + "/map/" + file)) << file;
+  fs::remove_all(dir);
+}
+
+TEST_F(TinyRun, ItsRecordingGoesOutInEveryFormatAndCarmenComesBack) {
+  const std::string dir = fresh_folder("formats"), log = out_ + "/recording/log.h5";
+  for (const char* to : {"flaser.log", "robot.clf", "path.tum", "cloud.ply", "cloud.pcd", "kitti"}) {
+    const Answer said = adit_says("convert " + log + " " + dir + "/" + to + " --every 20");
+    ASSERT_EQ(said.exit_code, 0) << to << said.err;
+    EXPECT_TRUE(fs::exists(dir + "/" + to)) << to;
+  }
+  EXPECT_TRUE(fs::exists(dir + "/kitti/labels/000000.label"));
+  ASSERT_EQ(adit_says("convert " + dir + "/robot.clf " + dir + "/back.h5").exit_code, 0);
+  ASSERT_EQ(adit_says("convert " + dir + "/back.h5 " + dir + "/again.clf").exit_code, 0);
+  // TRUEPOS lines are gone with the truth; the scans are the same.
+  std::string without;
+  std::istringstream lines(read_text(dir + "/robot.clf"));
+  for (std::string line; std::getline(lines, line);)
+    if (!line.starts_with("TRUEPOS")) without += line + "\n";
+  EXPECT_TRUE(without == read_text(dir + "/again.clf"));
+  EXPECT_THAT(adit_says("convert " + dir + "/robot.clf " + dir + "/no.ply").err, HasSubstr("needs the truth"));
+  EXPECT_THAT(adit_says("convert " + log + " " + dir + "/no.xyz").err, HasSubstr("'.xyz' is no format"));
+  fs::remove_all(dir);
+}
+
+TEST(Pictures, ARigIsDrawnFromFourSides) {
+  const std::string dir = fresh_folder("rig");
+  const Answer said = adit_says("rig cart4 -o " + dir);
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  for (const char* view : {"corner", "side", "front", "above"})
+    EXPECT_GT(fs::file_size(dir + "/" + view + ".png"), 20000u) << view;
   fs::remove_all(dir);
 }
 

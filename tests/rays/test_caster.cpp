@@ -40,6 +40,28 @@ TEST(Caster, PacketsAnswerAsSingleRays) {
   }
 }
 
+TEST(Caster, AGlanceIsTheHitToFloats) {
+  const Mesh mesh = fine_box_mesh({0, 0, 0}, {30, 5, 2}, 0.3);
+  const Caster caster(mesh);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 1003; ++i) rays.push_back({Vec3(10, 2, 1), any_direction(i), i % 5 ? 1e4 : 0.5});
+  std::vector<Hit> hits(rays.size());
+  std::vector<Glance> glances(rays.size());
+  caster.nearest(rays, hits);
+  caster.glance(rays, glances);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(glances[i].face, hits[i].face);
+    if (hits[i].face < 0) {
+      EXPECT_EQ(glances[i].range_m, INFINITY);
+      continue;
+    }
+    EXPECT_NEAR(glances[i].range_m, hits[i].range_m, 5e-5);
+    EXPECT_NEAR(glances[i].cosine, hits[i].cosine, 1e-5);
+    EXPECT_NEAR(hits[i].cosine, mesh.normal(static_cast<size_t>(hits[i].face)).dot(rays[i].direction), 1e-12);
+    EXPECT_GT(hits[i].cosine, 0);  // met from within
+  }
+}
+
 TEST(Caster, NothingWithinReachIsInfinity) {
   const Mesh box = box_mesh({0, 0, 0}, {10, 10, 10});
   const Caster caster(box);

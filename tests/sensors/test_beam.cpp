@@ -25,7 +25,7 @@ TEST(Beam, MeetsTheNearestBoxAndTellsWhatItIs) {
 
 TEST(Beam, IncidenceIsTheAngleToTheSidesNormal) {
   const Meeting met = meet_hull(hull, {0, 0, 0}, Vec3(std::cos(0.3), std::sin(0.3), 0), 0.3);
-  EXPECT_NEAR(met.incidence_rad, 0.3, 1e-12);
+  EXPECT_NEAR(met.incidence_rad(), 0.3, 1e-12);
   EXPECT_NEAR(met.range_m, 2 / std::cos(0.3), 1e-12);
 }
 
@@ -47,14 +47,14 @@ TEST(Beam, MeetsABoxWhereAMeshOfTheSameBoxIsMet) {
     const Vec3 aim = 0.4 * Vec3(draw(3), draw(4), draw(5)) - origin;
     const Ray ray{origin, aim.normalized()};
     const Hit hit = caster.nearest(ray);
-    const Meeting by_mesh = meeting_of(mesh, ray, hit, 0.3);
+    const Meeting by_mesh = meeting_of(mesh, hit, 0.3);
     const Meeting by_box = meet_hull(box, ray.origin, ray.direction, 0.3);
     // A graze within the floats of the tree may go either way; none of these rays does.
     ASSERT_EQ(std::isfinite(by_mesh.range_m), std::isfinite(by_box.range_m)) << i;
     if (!std::isfinite(by_box.range_m)) continue;
     ++met;
     EXPECT_NEAR(by_mesh.range_m, by_box.range_m, 1e-6) << i;
-    EXPECT_NEAR(by_mesh.incidence_rad, by_box.incidence_rad, 1e-6) << i;
+    EXPECT_NEAR(by_mesh.incidence_rad(), by_box.incidence_rad(), 1e-6) << i;
   }
   EXPECT_GT(met, 500);
 }

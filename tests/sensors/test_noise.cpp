@@ -18,13 +18,29 @@ struct Sample {
   double mean = 0, sd = 0, echoes = 0, unreadable = 0;  // the last two as shares
 };
 
-Sample sample(const LaserModel& model, const Meeting& met, double bias_m, const SensorSettings& s, std::uint64_t seed) {
+// A flat target that fills the spot.
+struct Target {
+  double range_m, reflectivity, incidence_rad = 0;
+};
+
+Device device_of(const std::string& model, const LaserChoice& choice = {}) {
+  return {.model = load_laser(model, 38400, choice)};
+}
+
+Reading read_one(const Device& device, const Target& wall, const SensorSettings& s, std::uint64_t seed,
+                 std::uint64_t beam, double on_s = 0) {
+  std::vector<Return> returns{{wall.range_m, wall.reflectivity * std::cos(wall.incidence_rad)}};
+  return reading(device, returns, wall.incidence_rad, s, chance_at(Draws(seed, Draw::beam_chance), 17, beam),
+                 {seed, 17, beam}, on_s);
+}
+
+Sample sample(const Device& device, const Target& wall, const SensorSettings& s, std::uint64_t seed) {
   std::vector<double> errors;
   double unreadable = 0, sum = 0, squares = 0;
   for (std::uint64_t k = 0; k < beams; ++k) {
-    const double r = reading(model, met, bias_m, s, {seed, 17, k});
+    const double r = read_one(device, wall, s, seed, k).range_m;
     unreadable += std::isnan(r);
-    if (std::isfinite(r)) errors.push_back(r - met.range_m);
+    if (std::isfinite(r)) errors.push_back(r - wall.range_m);
   }
   const double n = static_cast<double>(errors.size());
   for (double e : errors) sum += e;
@@ -32,17 +48,21 @@ Sample sample(const LaserModel& model, const Meeting& met, double bias_m, const 
   return {sum / n, std::sqrt(squares / n), n / beams, unreadable / beams};
 }
 
-Meeting wall(double range_m, double reflectivity, double incidence_rad = 0) {
-  return {.range_m = range_m, .incidence_rad = incidence_rad, .reflectivity = reflectivity, .label = Label::rib};
+double share_of(Code code, const Device& device, const Target& wall, const SensorSettings& s) {
+  double n = 0;
+  for (std::uint64_t k = 0; k < beams; ++k) n += read_one(device, wall, s, 1, k).code == code;
+  return n / beams;
 }
 
 TEST(Noise, AWhiteWallAtFiveMetresIsReadWithFiveMillimetresSdAndTheDevicesBias) {
-  const LaserModel model = load_laser("lms200", 38400);
+  const Device device = device_of("lms200");
   SensorSettings s = exact();
   s.noise = true;
-  const double expected = std::hypot(range_sigma_m(model, 0.8, 5), 1e-3 / std::sqrt(12.0));  // and the rounding
+  const double expected = std::hypot(0.005, 1e-3 / std::sqrt(12.0));  // and the rounding
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const Sample got = sample(model, wall(5, 0.8), 0.007, s, seed);
+    Device biased = device;
+    biased.bias_m = 0.007;
+    const Sample got = sample(biased, {5, 0.8}, s, seed);
     EXPECT_EQ(got.echoes, 1);
     EXPECT_NEAR(got.mean, 0.007, 5 * expected / std::sqrt(beams)) << seed;         // five standard errors
     EXPECT_NEAR(got.sd, expected, 5 * expected / std::sqrt(2.0 * beams)) << seed;  // of an sd
@@ -51,41 +71,43 @@ TEST(Noise, AWhiteWallAtFiveMetresIsReadWithFiveMillimetresSdAndTheDevicesBias) 
 }
 
 TEST(Noise, GrowsTowardsTheThresholdAndWithTheSlantingSpot) {
-  const LaserModel model = load_laser("lms200", 38400);
+  const Device device = device_of("lms200");
+  const LaserModel& model = device.model;
   SensorSettings s = exact();
   s.noise = true;
   const double threshold = model.least_reflectivity(12);
   const double weak = std::hypot(0.005 * std::sqrt(2.0), 1e-3 / std::sqrt(12.0));
-  EXPECT_NEAR(sample(model, wall(12, threshold), 0, s, 1).sd, weak, 5 * weak / std::sqrt(2.0 * beams));
+  EXPECT_NEAR(sample(device, {12, threshold}, s, 1).sd, weak, 5 * weak / std::sqrt(2.0 * beams));
   s.footprint = true;
-  const double slanted = std::hypot(range_sigma_m(model, 0.45 * std::cos(1.2), 8), footprint_sigma_m(model, 8, 1.2),
-                                    1e-3 / std::sqrt(12.0));
-  EXPECT_NEAR(sample(model, wall(8, 0.45, 1.2), 0, s, 1).sd, slanted, 5 * slanted / std::sqrt(2.0 * beams));
+  const double slanted = std::hypot(range_sigma_m(model, model.least_reflectivity(8) / (0.45 * std::cos(1.2))),
+                                    footprint_sigma_m(model, 8, 1.2), 1e-3 / std::sqrt(12.0));
+  EXPECT_NEAR(sample(device, {8, 0.45, 1.2}, s, 1).sd, slanted, 5 * slanted / std::sqrt(2.0 * beams));
 }
 
 TEST(Noise, ShareOfEchoesIsTheChanceOfDetection) {
-  const LaserModel model = load_laser("lms200", 38400);
+  const Device device = device_of("lms200");
+  const LaserModel& model = device.model;
   SensorSettings s = exact();
   s.detection = true;
   for (double range_m : {8.0, 9.0, 9.4, 10.0, 11.0}) {
     const double p = detection_chance(model, 0.1, range_m, s.detection_spread);
-    EXPECT_NEAR(sample(model, wall(range_m, 0.1), 0, s, 1).echoes, p, 5 * std::sqrt(p * (1 - p) / beams)) << range_m;
+    EXPECT_NEAR(sample(device, {range_m, 0.1}, s, 1).echoes, p, 5 * std::sqrt(p * (1 - p) / beams)) << range_m;
   }
-  EXPECT_EQ(sample(model, wall(8, 0.04), 0, exact(), 1).echoes, 1);  // switched off
+  EXPECT_EQ(sample(device, {8, 0.04}, exact(), 1).echoes, 1);  // switched off
 }
 
 TEST(Noise, DropOutsAreNaNInTheStatedShareAndNothingElseIs) {
-  const LaserModel model = load_laser("lms200", 38400);
+  const Device device = device_of("lms200");
   SensorSettings s = exact();
   s.drop_out = 0.01;
-  const Sample got = sample(model, wall(3, 0.5), 0, s, 1);
+  const Sample got = sample(device, {3, 0.5}, s, 1);
   EXPECT_NEAR(got.unreadable, 0.01, 5 * std::sqrt(0.01 * 0.99 / beams));
   EXPECT_EQ(got.echoes + got.unreadable, 1);
-  EXPECT_EQ(sample(model, wall(3, 0.5), 0, exact(), 1).unreadable, 0);
+  EXPECT_EQ(sample(device, {3, 0.5}, exact(), 1).unreadable, 0);
 }
 
 TEST(Noise, AnExactLmsErrsByItsRoundingAlone) {
-  const Sample got = sample(load_laser("lms200", 0), wall(3.0004, 0.5), 0, exact(), 1);
+  const Sample got = sample(device_of("lms200"), {3.0004, 0.5}, exact(), 1);
   EXPECT_NEAR(got.mean, -0.0004, 1e-6);  // a float at 3 m
   EXPECT_LT(got.sd, 1e-7);
 }
@@ -95,7 +117,7 @@ TEST(Noise, DevicesDifferInBiasWithinTheirBand) {
   double least = 1, most = -1;
   for (std::uint64_t seed = 0; seed < 50; ++seed)
     for (size_t mount = 0; mount < 4; ++mount) {
-      const double b = device_bias_m(model, mount, SensorSettings{}, seed);
+      const double b = make_device(model, mount, SensorSettings{}, seed).bias_m;
       least = std::min(least, b);
       most = std::max(most, b);
     }
@@ -104,7 +126,137 @@ TEST(Noise, DevicesDifferInBiasWithinTheirBand) {
   EXPECT_LE(least, -0.009);
   EXPECT_LE(most, 0.010);
   EXPECT_GE(most, 0.009);
-  EXPECT_EQ(device_bias_m(model, 0, exact(), 1), 0);
+  EXPECT_EQ(make_device(model, 0, exact(), 1).bias_m, 0);
+}
+
+TEST(Noise, TheCurveSwingsWithinItsBandAndDiffersByDevice) {
+  const LaserModel model = load_laser("lms200", 0);
+  SensorSettings s = exact();
+  s.range_curve = true;
+  double most = 0, apart = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const Device a = make_device(model, 0, s, seed), b = make_device(model, 1, s, seed);
+    for (double r = 0.5; r < 20; r += 0.1) {
+      most = std::max(most, std::abs(device_error_m(a, r, 0.5, 0)));
+      apart = std::max(apart, std::abs(device_error_m(a, r, 0.5, 0) - device_error_m(b, r, 0.5, 0)));
+    }
+  }
+  EXPECT_LE(most, 0.005);
+  EXPECT_GT(most, 0.003);  // of 300 amplitudes some are near the band
+  EXPECT_GT(apart, 0.003);
+}
+
+TEST(Noise, BiasCurveAndBrightnessStayWithinTheSheetsFifteenMillimetresButForFive) {
+  SensorSettings s = exact();
+  s.bias = s.range_curve = true;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const Device d = make_device(load_laser("lms200", 0), 0, s, seed);
+    for (double r = 1; r < 8; r += 0.25) EXPECT_LE(std::abs(device_error_m(d, r, 0.5, 0)), 0.015) << seed;
+  }
+}
+
+TEST(Noise, BrightAndDarkTargetsErrToOppositeSides) {
+  SensorSettings s = exact();
+  s.energy = true;
+  const Device d = make_device(load_laser("lms200", 0), 0, s, 3);
+  EXPECT_NE(d.energy_m, 0);
+  EXPECT_LE(std::abs(d.energy_m), 0.005);
+  EXPECT_NEAR(device_error_m(d, 5, 0.05, 0), d.energy_m, 1e-15);
+  EXPECT_NEAR(device_error_m(d, 5, 1, 0), -d.energy_m, 1e-15);
+  EXPECT_NEAR(device_error_m(d, 5, std::sqrt(0.05), 0), 0, 1e-15);
+}
+
+TEST(Noise, AColdDeviceErrsLessByAThirdEachHour) {
+  SensorSettings s = exact();
+  s.warm_up = true;
+  const Device d = make_device(load_laser("lms200", 0), 0, s, 3);
+  EXPECT_NE(d.warm_up_m, 0);
+  EXPECT_LE(std::abs(d.warm_up_m), 0.010);
+  EXPECT_EQ(device_error_m(d, 5, 0.5, 0), d.warm_up_m);
+  EXPECT_NEAR(device_error_m(d, 5, 0.5, 3600), d.warm_up_m / M_E, 1e-15);
+  EXPECT_LT(std::abs(device_error_m(d, 5, 0.5, 3 * 3600)), 0.05 * 0.010 + 1e-12);  // settled after three hours
+}
+
+TEST(Noise, CodesTellWhyThereIsNoRange) {
+  const Device device = device_of("lms200");
+  SensorSettings s = exact();
+  EXPECT_EQ(share_of(Code::beyond, device_of("lms200", {"8m", ""}), {9, 0.9}, s), 1);
+  EXPECT_EQ(share_of(Code::no_echo, device_of("generic"), {31, 0.9}, s), 1);  // it has no codes
+  s.detection = true;
+  EXPECT_EQ(share_of(Code::no_echo, device, {20, 0.03}, s), 1);
+  // At 95 % of the threshold what is not noticed is heard, but too weak.
+  const Target weak{10, 0.95 * device.model.least_reflectivity(10)};
+  const double p = 1 - detection_chance(device.model, weak.reflectivity, 10, s.detection_spread);
+  EXPECT_NEAR(share_of(Code::weak, device, weak, s), p, 5 * std::sqrt(p * (1 - p) / beams));
+  EXPECT_EQ(share_of(Code::no_echo, device, weak, s), 0);
+  s.drop_out = 1;
+  EXPECT_NEAR(share_of(Code::overflow, device, weak, s), 0.5, 5 * 0.5 / std::sqrt(beams));
+  EXPECT_NEAR(share_of(Code::channel, device, weak, s), 0.5, 5 * 0.5 / std::sqrt(beams));
+}
+
+TEST(Noise, ADirtyWindowSeesTheSameAsACleanOneOfABrighterTarget) {
+  const Device device = device_of("lms200");
+  SensorSettings clean = exact(), dirty = exact();
+  clean.detection = dirty.detection = true;
+  dirty.dirty_window = 1.55;
+  const double least = device.model.least_reflectivity(9);
+  EXPECT_EQ(sample(device, {9, 1.1 * least}, clean, 1).echoes,
+            sample(device, {9, 1.55 * 1.1 * least}, dirty, 1).echoes);
+}
+
+TEST(Noise, DustLosesLightBothWaysByBeerAndLambert) {
+  const Device device = device_of("lms200");
+  SensorSettings clear = exact(), dusty = exact();
+  clear.detection = dusty.detection = true;
+  dusty.dust_loss_per_m = 0.05;
+  const double least = device.model.least_reflectivity(9);
+  EXPECT_EQ(sample(device, {9, 1.05 * least}, clear, 1).echoes,
+            sample(device, {9, 1.05 * least * std::exp(2 * 0.05 * 9)}, dusty, 1).echoes);
+}
+
+TEST(Noise, DustEchoesComeByTheLawOfRareEvents) {
+  SensorSettings s = exact();
+  s.dust_echo_per_m = 0.03;
+  const Device ideal = device_of("ideal");
+  double early = 0;
+  for (std::uint64_t k = 0; k < beams; ++k) {
+    const Reading r = read_one(ideal, {8, 0.5}, s, 1, k);
+    EXPECT_EQ(r.fault == trouble::dust, r.range_m < 8);
+    early += r.fault == trouble::dust;
+  }
+  const double p = 1 - std::exp(-0.03 * 8);
+  EXPECT_NEAR(early / beams, p, 5 * std::sqrt(p * (1 - p) / beams));
+}
+
+TEST(Noise, CrosstalkComesInItsShareAnywhereInTheMode) {
+  SensorSettings s = exact();
+  s.crosstalk = 0.05;
+  const Device device = device_of("lms200");
+  double n = 0, sum = 0;
+  for (std::uint64_t k = 0; k < beams; ++k) {
+    const Reading r = read_one(device, {3, 0.5}, s, 1, k);
+    if (r.fault != trouble::stray) continue;
+    ++n;
+    sum += r.range_m;
+  }
+  EXPECT_NEAR(n / beams, 0.05, 5 * std::sqrt(0.05 * 0.95 / beams));
+  EXPECT_NEAR(sum / n, 32.759 / 2, 5 * 32.759 / std::sqrt(12 * n));
+}
+
+TEST(Noise, TheCounterStepsBeforeTheTelegramRounds) {
+  SensorSettings s = exact();
+  s.counter_mm = 10;
+  EXPECT_EQ(read_one(device_of("lms200"), {3.004, 0.5}, s, 1, 1).range_m, 3.0F);
+  EXPECT_EQ(read_one(device_of("lms200"), {3.006, 0.5}, s, 1, 1).range_m, 3.01F);
+}
+
+TEST(Noise, EveryEffectIsOffInAnExactLaser) {
+  for (std::uint64_t k = 0; k < 1000; ++k) {
+    const Reading r = read_one(make_device(load_laser("ideal", 0), 0, exact(), 5), {7.25, 0.01}, exact(), 1, k);
+    EXPECT_NEAR(r.range_m, 7.25, 1e-6);  // a float, told in micrometres
+    EXPECT_EQ(r.fault, 0);
+    EXPECT_EQ(r.code, Code::range);
+  }
 }
 
 TEST(Noise, MountsErrByTheStatedSdAndNotAtAllWhenSwitchedOff) {

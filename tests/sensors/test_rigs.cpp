@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/bundled.h"
-#include "sensors/beam.h"
+#include "sensors/fan.h"
 #include "sim/vehicle.h"
 #include "tests/sensors/scenes.h"
 #include "tests/support/shapes.h"
@@ -29,7 +29,7 @@ TEST(Rigs, NoLaserOfTheCartSeesTheCartOrItsPusher) {
     box.max_B.array() += 0.02;
   }
   for (const Mount& mount : load_rig("cart4", 38400).mounts) {
-    const std::vector<Meeting> shadow = own_shadow(hull, mount, 0.3);
+    const std::vector<Meeting> shadow = make_fan(mount, make_bundle(1), hull, 0.3).shadow;
     for (size_t k = 0; k < shadow.size(); ++k) EXPECT_EQ(shadow[k].range_m, INFINITY) << mount.name << " beam " << k;
   }
 }

@@ -42,8 +42,8 @@ TEST(Sick, AnIdealLaserSeesEverything) {
 }
 
 TEST(Sick, NoiseIsTheSheetsOnBrightTargetsAndRootTwoTimesAtTheThreshold) {
-  EXPECT_NEAR(range_sigma_m(lms200(), 0.8, 5), 0.005, 0.005 * 0.001);
-  EXPECT_NEAR(range_sigma_m(lms200(), lms200().least_reflectivity(12), 12), 0.005 * std::sqrt(2), 1e-9);
+  EXPECT_NEAR(range_sigma_m(lms200(), lms200().least_reflectivity(5) / 0.8), 0.005, 0.005 * 0.001);
+  EXPECT_NEAR(range_sigma_m(lms200(), 1), 0.005 * std::sqrt(2), 1e-9);
 }
 
 TEST(Sick, FootprintAddsNothingHeadOnAndAnEighthOfTheSpotAtFortyFiveDegrees) {
@@ -58,6 +58,48 @@ TEST(Sick, TheTelegramTellsWholeMillimetresUpToTheModesRange) {
   EXPECT_TRUE(std::isfinite(reported_range_m(lms200(), 32.758)));
   EXPECT_EQ(reported_range_m(lms200(), 32.76), INFINITY);
   EXPECT_TRUE(std::isnan(reported_range_m(lms200(), 0.0001)));
+}
+
+TEST(Sick, TheOutdoorUnitsThresholdIsItsChartAndBlindForDarkTargetsAtHand) {
+  const LaserModel m = load_laser("lms291", 0);
+  // Read off the chart of a clean window.
+  for (const auto& [range_m, least] : {std::pair{0.5, 0.18}, {1.0, 0.06}, {5.0, 0.016}, {20.0, 0.052}, {80.0, 0.74}})
+    EXPECT_NEAR(m.least_reflectivity(range_m), least, 1e-12) << range_m;
+  EXPECT_NEAR(m.least_reflectivity(0.6), 0.14, 1e-12);      // straight between the points
+  EXPECT_LT(detection_chance(m, 0.06, 0.7, spread), 0.05);  // coal at hand
+  EXPECT_GT(detection_chance(m, 0.06, 2, spread), 0.95);
+  EXPECT_GT(detection_chance(m, 0.05, 18, spread), 0.5);  // 5 % to some 20 m
+  EXPECT_LT(detection_chance(m, 0.05, 23, spread), 0.1);
+}
+
+TEST(Sick, ModesEndWhereTheirBitsDo) {
+  for (const auto& [mode, most] : {std::pair{"8m", 8.183}, {"16m", 16.375}, {"32m", 32.759}, {"80m", 81.83}}) {
+    const LaserModel m = load_laser("lms200", 38400, {mode, ""});
+    EXPECT_TRUE(std::isfinite(reported_range_m(m, most))) << mode;
+    EXPECT_EQ(reported_range_m(m, most + 0.01), INFINITY) << mode;
+  }
+  EXPECT_EQ(load_laser("lms200", 38400, {"80m", ""}).resolution_m, 0.01);
+}
+
+TEST(Sick, RastersHaveTheTelegramsValuesTurnsAndRates) {
+  struct Row {
+    const char* raster;
+    int beams, interlace;
+    double slow_hz, fast_hz;
+  };
+  // The telegram listing's table at 38.4 and 500 kBd.
+  for (const Row& row :
+       {Row{"180/1", 181, 1, 8.3, 75}, Row{"180/0.5", 361, 2, 4.2, 37.5}, Row{"100/0.25", 401, 4, 3.8, 18.8}}) {
+    const LaserModel slow = load_laser("lms200", 38400, {"", row.raster}),
+                     fast = load_laser("lms200", 500000, {"", row.raster});
+    EXPECT_EQ(slow.beams, row.beams);
+    EXPECT_EQ(slow.interlace, row.interlace);
+    EXPECT_NEAR(1 / slow.interval_s, row.slow_hz, 0.06) << row.raster;
+    EXPECT_NEAR(1 / fast.interval_s, row.fast_hz, 0.1) << row.raster;
+  }
+  const LaserModel narrow = load_laser("lms211", 500000);
+  EXPECT_EQ(narrow.beams, 201);
+  EXPECT_NEAR(narrow.fov_rad, 100 * M_PI / 180, 1e-12);
 }
 
 }  // namespace

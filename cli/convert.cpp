@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/convert.h"
+
+#include "base/carmen.h"
+#include "base/cloud.h"
+#include "base/error.h"
+#include "base/h5.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <optional>
+
+namespace adit {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class Format { h5, flaser, robotlaser, tum, ply, pcd, folder };
+
+Format format_of(const std::string& name) {
+  const std::string ending = fs::path(name).extension().string();
+  if (ending == ".h5") return Format::h5;
+  if (ending == ".log") return Format::flaser;
+  if (ending == ".clf") return Format::robotlaser;
+  if (ending == ".tum") return Format::tum;
+  if (ending == ".ply") return Format::ply;
+  if (ending == ".pcd") return Format::pcd;
+  if (ending.empty()) return Format::folder;
+  throw Error(name + ": '" + ending +
+              "' is no format that adit knows; it knows .h5, .log and .clf (CARMEN), .tum, .ply, " +
+              ".pcd, and a folder (SemanticKITTI)");
+}
+
+// What a file holds; each format has a part of it.
+struct Content {
+  std::optional<Log> log;
+  std::optional<Truth> truth;
+  std::optional<Trajectory> path;
+  std::optional<PointCloud> points;
+};
+
+Content read_h5(const std::string& file, std::string truth_file) {
+  Content c;
+  if (const H5Reader in(file); in.has_attribute("/", "format") && in.text("/", "format") == "adit truth") {
+    c.truth = load_truth(file);
+  } else {
+    c.log = load_log(file);
+    if (truth_file.empty() && fs::exists(fs::path(file).parent_path() / "truth.h5"))
+      truth_file = (fs::path(file).parent_path() / "truth.h5").string();
+    if (!truth_file.empty()) c.truth = load_truth(truth_file);
+  }
+  if (c.truth) c.path = c.truth->drive.path;
+  return c;
+}
+
+Content read_content(const std::string& file, const std::string& truth_file) {
+  Content c;
+  switch (format_of(file)) {
+    case Format::h5:
+      return read_h5(file, truth_file);
+    case Format::flaser:
+    case Format::robotlaser: {
+      CarmenLog carmen = read_carmen(file);
+      c.log = std::move(carmen.log);
+      if (!carmen.true_path.empty()) c.path = std::move(carmen.true_path);
+      return c;
+    }
+    case Format::tum:
+      c.path = read_tum(file);
+      return c;
+    case Format::ply:
+      c.points = read_points(file);
+      return c;
+    case Format::pcd:
+      c.points = read_pcd(file);
+      return c;
+    case Format::folder:
+      throw Error(file + ": folders are written, not read; name a file");
+  }
+  return c;
+}
+
+template <class T>
+const T& needed(const std::optional<T>& part, const std::string& what, const std::string& from, const std::string& to) {
+  if (!part) throw Error(to + ": needs " + what + ", and " + from + " has none");
+  return *part;
+}
+
+void write_content(const Content& c, const std::string& from, const std::string& to, size_t every) {
+  const auto log = [&]() -> const Log& { return needed(c.log, "scans", from, to); };
+  const auto truth = [&]() -> const Truth& {
+    return needed(c.truth, "the truth (truth.h5 beside it, or --truth)", from, to);
+  };
+  const auto points = [&] { return c.points ? *c.points : true_cloud(log(), truth(), every).points; };
+  switch (format_of(to)) {
+    case Format::h5:
+      return save_log(to, log());
+    case Format::flaser:
+      return write_carmen(to, log(), CarmenStyle::flaser, c.truth ? &*c.truth : nullptr);
+    case Format::robotlaser:
+      return write_carmen(to, log(), CarmenStyle::robotlaser, c.truth ? &*c.truth : nullptr);
+    case Format::tum:
+      return write_tum(to, needed(c.path, "a path", from, to));
+    case Format::ply:
+      return write_points(to, points());
+    case Format::pcd:
+      return write_pcd(to, points());
+    case Format::folder:
+      write_kitti(to, log(), truth());
+  }
+}
+
+}  // namespace
+
+Log load_any_log(const std::string& file) {
+  const std::string ending = fs::path(file).extension().string();
+  return ending == ".log" || ending == ".clf" ? read_carmen(file).log : load_log(file);
+}
+
+int convert_command(const std::string& from, const std::string& to, const std::string& truth_file, int every,
+                    Console& console) {
+  format_of(to);  // a bad name is said before a long read
+  write_content(read_content(from, truth_file), from, to, static_cast<size_t>(every));
+  console.result("written: " + to);
+  console.json(nlohmann::ordered_json{{"from", from}, {"to", to}}.dump());
+  return 0;
+}
+
+}  // namespace adit

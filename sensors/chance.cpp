@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sensors/chance.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+namespace adit {
+namespace {
+
+// Eight beams side by side: straight lines of arithmetic that the compiler turns into vectors, each lane with the bits
+// that it would have alone.
+constexpr size_t lanes = 8;
+using Words = std::uint32_t[lanes];
+using Numbers = double[lanes];
+
+constexpr double two52 = 4503599627370496.0;
+
+// In (0, 1).
+void units(const Words& w, Numbers& u) {
+  for (size_t k = 0; k < lanes; ++k) {
+    // A double of 2^52 and more has whole numbers in its lowest bits.
+    const double whole = std::bit_cast<double>(std::bit_cast<std::uint64_t>(two52) | w[k]) - two52;
+    u[k] = (whole + 0.5) * 0x1p-32;
+  }
+}
+
+// log(u) = e log(2) + log(m), m in [1, 2); log(m / 1.5) = 2 artanh(s), s = (m - 1.5) / (m + 1.5), by its series up to
+// s^17: |s| <= 1/5 leaves 1e-14.
+void logs(const Numbers& u, Numbers& out) {
+  for (size_t k = 0; k < lanes; ++k) {
+    const auto bits = std::bit_cast<std::uint64_t>(u[k]);
+    const double e = std::bit_cast<double>(std::bit_cast<std::uint64_t>(two52) | (bits >> 52)) - two52 - 1023;
+    const double m = std::bit_cast<double>((bits & 0x000FFFFFFFFFFFFFU) | 0x3FF0000000000000U);
+    const double s = (m - 1.5) / (m + 1.5), q = s * s;
+    double sum = 1.0 / 17;
+    for (const double n : {15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0, 1.0}) sum = sum * q + 1 / n;
+    constexpr double log_1_5 = 0.405465108108164381978;
+    out[k] = e * std::numbers::ln2 + log_1_5 + 2 * s * sum;
+  }
+}
+
+// Sine and cosine of 2 pi v, v in (0, 1), from those of half the angle from -pi / 2 to pi / 2 by Taylor's series.
+void sines(const Numbers& v, Numbers& sine, Numbers& cosine) {
+  for (size_t k = 0; k < lanes; ++k) {
+    const double x = std::numbers::pi * (v[k] - 0.5), q = x * x;
+    double s = 1, c = 1;
+    for (const double n : {20.0, 18.0, 16.0, 14.0, 12.0, 10.0, 8.0, 6.0, 4.0, 2.0}) {
+      s = 1 - s * q / (n * (n + 1));
+      c = 1 - c * q / (n * (n - 1));
+    }
+    s *= x;
+    // Half a turn was taken off.
+    sine[k] = -2 * s * c;
+    cosine[k] = 2 * s * s - 1;
+  }
+}
+
+// Box and Muller: two normal numbers of two even ones.
+void eight(const Words (&w)[4], Chance* out, size_t n) {
+  Numbers u, v, detect, drop, ln, sine, cosine;
+  units(w[0], u);
+  units(w[1], v);
+  units(w[2], detect);
+  units(w[3], drop);
+  logs(u, ln);
+  sines(v, sine, cosine);
+  for (size_t k = 0; k < n; ++k) {
+    const double r = std::sqrt(-2 * ln[k]);
+    out[k] = {r * cosine[k], r * sine[k], detect[k], drop[k]};
+  }
+}
+
+void some(const Draws& draws, std::uint64_t scan, std::uint64_t first, Chance* out, size_t n) {
+  Words w[4] = {};
+  for (size_t k = 0; k < n; ++k) {
+    const std::array<std::uint32_t, 4> words = draws.at(scan, first + k);
+    for (size_t i = 0; i < 4; ++i) w[i][k] = words[i];
+  }
+  eight(w, out, n);
+}
+
+}  // namespace
+
+void draw_chances(const Draws& draws, std::uint64_t scan, std::span<Chance> chances) {
+  for (size_t k = 0; k < chances.size(); k += lanes)
+    some(draws, scan, k, chances.data() + k, std::min(lanes, chances.size() - k));
+}
+
+Chance chance_at(const Draws& draws, std::uint64_t scan, std::uint64_t beam) {
+  Chance one{};
+  some(draws, scan, beam, &one, 1);
+  return one;
+}
+
+}  // namespace adit
