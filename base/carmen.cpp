@@ -135,13 +135,17 @@ void read_new(Words& words, Lines& device) {
   words.number();
   Raster shape;
   shape.start_rad = words.number();
-  words.number();
+  const double fov_rad = words.number();
   shape.step_rad = words.number();
   shape.max_m = words.number();
   words.number();
   words.number();
   shape.beams = words.count(words.left());
   if (shape.beams < 2 || !(shape.step_rad > 0)) words.fail("needs two ranges at least and a step greater than 0");
+  // The step is rounded as the field of view is, and many steps add that up: where both mean the same raster, the field
+  // of view tells it better.
+  const auto steps = static_cast<double>(shape.beams - 1);
+  if (std::abs(fov_rad - steps * shape.step_rad) < 0.1 * shape.step_rad) shape.step_rad = fov_rad / steps;
   std::vector<float> ranges = read_ranges(words, shape.beams);
   constexpr size_t oldest = 6 + 4 + 3;
   if (words.left() > oldest + 1) {
