@@ -87,9 +87,10 @@ void append_pose(Trajectory& path, double stamp_s, const Pose& X) {
 
 // The words that end every message: the time of the message, the host, the time of the logger.
 double stamp_of(Words& words) {
-  words.number();
+  const double ipc_s = words.number();
   words.word();
-  return words.number();
+  words.number();
+  return ipc_s;
 }
 
 void add_scan(Lines& device, Words& words, const Raster& shape, std::vector<float> ranges, const Pose& X,

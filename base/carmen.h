@@ -21,7 +21,8 @@ struct CarmenLog {
 
 /// Reads laser lines of either style, TRUEPOS, and PARAM robot_front_laser_max; passes over other lines. Ranges at or
 /// beyond the laser's maximum are no echo. Old lines state no field of view: it is 180 deg, with 180 and 360 values
-/// (or any even number) the last beam is missing. The device is taken for an LMS 200. Stamps are the logger's.
+/// (or any even number) the last beam is missing. The device is taken for an LMS 200. Stamps are those of the message
+/// (ipc_timestamp), by which published relations name their poses, not the logger's.
 /// A line that is cut or not of numbers, or a stamp that does not grow: Error with file and line.
 CarmenLog read_carmen(const std::string& file);
 

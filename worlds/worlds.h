@@ -153,8 +153,7 @@ Fields fields(RouteSettings& settings);
 
 /// A line to drive, following passages' centre lines, corners rounded by arcs, a point every 0.25 m.
 ///   loops           every passage that lies on a loop or between loops once at least, dead ends left out; twice_share
-///   of
-///                   the way is driven twice, some of it in the same and some in the opposite direction; no U-turn
+///                   of the way is driven twice, some of it in the same and some in the opposite direction; no U-turn
 ///   all             every passage once at least, dead ends too, by a short closed tour; as many U-turns as dead ends
 ///   around          the loops about the pillars named, one after the other, joined by shortest ways
 ///   waypoints       shortest ways between the junctions given
