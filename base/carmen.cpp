@@ -104,7 +104,7 @@ void add_scan(Lines& device, Words& words, const Raster& shape, std::vector<floa
       std::abs(shape.start_rad - first.start_rad) > 1e-6)
     words.fail("is of another raster than the ones before it; adit needs one raster for each laser");
   if (!device.scans.stamp_s.empty() && stamp_s <= device.scans.stamp_s.back())
-    words.fail("has a logger's stamp that does not grow");
+    words.fail("has a stamp that does not grow");
   for (float& r : ranges)
     if (r >= static_cast<float>(shape.max_m)) r = std::numeric_limits<float>::infinity();
   device.scans.range_m.insert(device.scans.range_m.end(), ranges.begin(), ranges.end());

@@ -88,7 +88,7 @@ RunFolder load_run(const std::string& out, const Common& common) {
 int run_command(const std::string& scenario, const Common& common, Console& console) {
   const Scenario s = scenario_of(scenario, common);
   load_vehicle(s.vehicle);
-  load_rig(s.sensors.rig, s.sensors.baud, {s.sensors.mode, s.sensors.raster});
+  load_rig(s.sensors);
   Stages stages(out_of(common, s.name), console);
   const World world = stages.world(s);
   const Stages::Driven driven = stages.drive(s, world);
@@ -157,7 +157,7 @@ int check_command(const std::string& given, Console& console) {
 int drive_command(const std::string& scenario, const std::string& world_dir, const Common& common, Console& console) {
   const Scenario s = scenario_of(scenario, common);
   load_vehicle(s.vehicle);
-  load_rig(s.sensors.rig, s.sensors.baud, {s.sensors.mode, s.sensors.raster});
+  load_rig(s.sensors);
   Stages stages(out_of(common, s.name), console);
   const World world = world_dir.empty() ? stages.world(s) : load_world(world_dir);
   const Stages::Driven driven = stages.drive(s, world);

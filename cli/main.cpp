@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "cli/commands.h"
 #include "cli/convert.h"
-#include "cli/rig_picture.h"
+#include "cli/rig_command.h"
 
 #include <CLI/CLI.hpp>
 

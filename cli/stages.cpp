@@ -93,7 +93,7 @@ Stages::Driven Stages::drive(const Scenario& s, const World& world) {
   timed("drive", [&] {
     const auto seed = static_cast<std::uint64_t>(s.seed);
     const Vehicle vehicle = load_vehicle(s.vehicle);
-    const Rig rig = load_rig(s.sensors.rig, s.sensors.baud, {s.sensors.mode, s.sensors.raster});
+    const Rig rig = load_rig(s.sensors);
     const Route route = plan_route(world, s.route, seed);
     const Drive path = adit::drive(world, route, vehicle, s.drive, seed, console_.progress());
     driven.recording = record(world, path, rig, vehicle.hull, s.sensors, seed, console_.progress());

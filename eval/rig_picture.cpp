@@ -20,41 +20,16 @@ Colour laser_colour(size_t i) {
   return rgb(palette[i % palette.size()]);
 }
 
-Mesh box_of(const Box& box, const Pose& X_WB) {
-  Mesh m;
-  for (int k = 0; k < 8; ++k) {
-    const Vec3 p(k & 1 ? box.max_B.x() : box.min_B.x(), k & 2 ? box.max_B.y() : box.min_B.y(),
-                 k & 4 ? box.max_B.z() : box.min_B.z());
-    m.vertex.push_back(X_WB * p);
-  }
-  m.face = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-            {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return m;
-}
-
-// Each face with corners of its own, so that boxes have edges.
-Skin flat_skin(const Mesh& mesh, Colour colour) {
-  Skin skin;
-  for (size_t f = 0; f < mesh.face.size(); ++f) {
-    const auto first = static_cast<std::uint32_t>(skin.p.size());
-    for (int k = 0; k < 3; ++k) {
-      skin.p.push_back(mesh.corner(f, k).cast<float>());
-      skin.normal.push_back(mesh.normal(f).cast<float>());
-      skin.colour.push_back(colour);
-    }
-    skin.face.push_back({first, first + 1, first + 2});
-  }
-  return skin;
-}
-
 Scene scene_of(const RigExhibit& x) {
   Scene scene;
   Skin rock = skin_of(x.passage,
                       [](std::uint32_t, Label label) { return label == Label::floor ? rgb(0xb9b0a4) : rgb(0xc9c9c7); });
   rock.sides = Skin::Sides::inner;
   scene.skins.push_back(rock);
+  Skin vehicle;
   for (const Box& box : x.hull)
-    scene.skins.push_back(flat_skin(box_of(box, x.X_WB), box.label == Label::pusher ? rgb(0x8a6f9e) : rgb(0x4f5b66)));
+    add_box(vehicle, box.min_B, box.max_B, x.X_WB, box.label == Label::pusher ? rgb(0x8a6f9e) : rgb(0x4f5b66));
+  scene.skins.push_back(vehicle);
   Skin beams;
   for (size_t i = 0; i < x.rig.mounts.size(); ++i) {
     const Vec3 mirror = x.X_WB * x.rig.mounts[i].X_BS.translation();

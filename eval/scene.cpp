@@ -100,4 +100,30 @@ void add_ball(Skin& skin, const Vec3& centre, double radius_m, Colour colour) {
     }
 }
 
+void add_box(Skin& skin, const Vec3& low, const Vec3& high, const Pose& X_WB, Colour colour) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {0, 1}) {
+      const auto first = static_cast<std::uint32_t>(skin.p.size());
+      Vec3 normal = Vec3::Zero();
+      normal[axis] = side ? 1 : -1;
+      for (int k = 0; k < 4; ++k) {
+        Vec3 p;
+        p[axis] = side ? high[axis] : low[axis];
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        p[u] = (k == 1 || k == 2) ? high[u] : low[u];
+        p[v] = k >= 2 ? high[v] : low[v];
+        skin.p.push_back((X_WB * p).cast<float>());
+        skin.normal.push_back((X_WB.linear() * normal).cast<float>());
+        skin.colour.push_back(colour);
+      }
+      if (side) {
+        skin.face.push_back({first, first + 1, first + 2});
+        skin.face.push_back({first, first + 2, first + 3});
+      } else {
+        skin.face.push_back({first, first + 2, first + 1});
+        skin.face.push_back({first, first + 3, first + 2});
+      }
+    }
+}
+
 }  // namespace adit

@@ -60,6 +60,8 @@ Skin tube(const std::vector<Vec3>& line, double radius_m, Colour colour);
 void append(Skin& skin, const Skin& more);
 /// Adds a ball.
 void add_ball(Skin& skin, const Vec3& centre, double radius_m, Colour colour);
+/// Adds the box [low, high] of a frame that stands at X_WB, with sharp edges.
+void add_box(Skin& skin, const Vec3& low, const Vec3& high, const Pose& X_WB, Colour colour);
 
 /// Takes the picture, anti-aliased (2 x 2 samples a pixel) and with crevices darkened. The same bytes on any number of
 /// threads.

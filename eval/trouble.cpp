@@ -17,32 +17,6 @@ namespace {
 constexpr int width_px = 1280, height_px = 800, foot_px = 110;
 constexpr double reach_m = 9;
 
-void add_box(Skin& skin, const Box& box, const Pose& X_WB, Colour colour) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int side : {0, 1}) {
-      const auto first = static_cast<std::uint32_t>(skin.p.size());
-      Vec3 normal = Vec3::Zero();
-      normal[axis] = side ? 1 : -1;
-      for (int k = 0; k < 4; ++k) {
-        Vec3 p;
-        p[axis] = side ? box.max_B[axis] : box.min_B[axis];
-        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-        p[u] = (k == 1 || k == 2) ? box.max_B[u] : box.min_B[u];
-        p[v] = k >= 2 ? box.max_B[v] : box.min_B[v];
-        skin.p.push_back((X_WB * p).cast<float>());
-        skin.normal.push_back((X_WB.linear() * normal).cast<float>());
-        skin.colour.push_back(colour);
-      }
-      if (side) {
-        skin.face.push_back({first, first + 1, first + 2});
-        skin.face.push_back({first, first + 2, first + 3});
-      } else {
-        skin.face.push_back({first, first + 2, first + 1});
-        skin.face.push_back({first, first + 3, first + 2});
-      }
-    }
-}
-
 // Every quarter metre of what is near, a hand's breadth above the ground that the vehicle drove on.
 std::vector<Vec3> way_driven(const Drive& drive, const Vec3& place) {
   std::vector<Vec3> line;
@@ -101,7 +75,8 @@ Picture trouble_picture(const World& world, const Drive& drive, const Hull& hull
     scene.skins.back().rock = 0.6f;
   }
   Skin vehicle;
-  for (const Box& box : hull) add_box(vehicle, box, X_WB, box.label == Label::pusher ? rgb(0xd55e00) : rgb(0xe6b800));
+  for (const Box& box : hull)
+    add_box(vehicle, box.min_B, box.max_B, X_WB, box.label == Label::pusher ? rgb(0xd55e00) : rgb(0xe6b800));
   scene.skins.push_back(vehicle);
   const std::vector<Vec3> driven = way_driven(drive, place), on = way_on(drive, place);
   if (driven.size() > 1) scene.skins.push_back(tube(driven, 0.04, ink::map));

@@ -28,7 +28,7 @@ Aligned align(const Odometry& odometry, const std::vector<ScanPoints>& points, c
   return align_robust(odometry, match, settings.robust, progress);
 }
 
-/// What the lasers other than the horizontal one add.
+/// What the lasers other than the horizontal one add: path, points, surface, volume and notes. Leaves planar and grid alone.
 void add_height(const Log& log, const MapSettings& settings, const Progress& progress, Estimate& estimate) {
   TiltSolution tilt = solve_tilt(log, estimate.path.stamp_s, estimate.planar, settings.tilt, progress);
   if (!tilt.note.empty()) estimate.notes.push_back(tilt.note);
@@ -80,13 +80,10 @@ Estimate make_map(const Log& log, const MapSettings& settings, const Progress& p
   estimate.notes.insert(estimate.notes.end(), aligned.notes.begin(), aligned.notes.end());
 
   // Height is mostly one factorisation on one thread: the grid is drawn beside it.
-  const std::vector<Pose2> planar = estimate.planar;
-  Grid grid;
   parallel_for(2, [&](size_t task) {
     if (task == 0) add_height(log, settings, progress, estimate);
-    if (task == 1) grid = map_grid(scans, mount, planar, settings.grid, settings.odometry.points);
+    if (task == 1) estimate.grid = map_grid(scans, mount, estimate.planar, settings.grid, settings.odometry.points);
   });
-  estimate.grid = std::move(grid);
   return estimate;
 }
 

@@ -40,4 +40,8 @@ Fields fields(SensorSettings& s) {
   };
 }
 
+Rig load_rig(const SensorSettings& s) {
+  return load_rig(s.rig, s.baud, {s.mode, s.raster});
+}
+
 }  // namespace adit

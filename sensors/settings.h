@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/config.h"
+#include "base/rig.h"
 
 #include <string>
 #include <vector>
@@ -43,5 +44,8 @@ struct SensorSettings {
 };
 
 Fields fields(SensorSettings& settings);
+
+/// The rig that the settings name, at their rate, mode and raster; the errors of base/rig.h.
+Rig load_rig(const SensorSettings& settings);
 
 }  // namespace adit

@@ -4,7 +4,7 @@
 # A target of its own compiles them, since a macro that is defined here must be defined wherever they are used.
 set(ADIT_COMMON_HEADERS <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <cmath> <functional> <limits> <map> <optional>
     <span> <string> <vector>)
-file(WRITE ${CMAKE_BINARY_DIR}/common.cpp "")
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/common.cpp CONTENT "")
 add_library(adit_common OBJECT ${CMAKE_BINARY_DIR}/common.cpp)
 target_link_libraries(adit_common PRIVATE Eigen3::Eigen)
 target_precompile_headers(adit_common PRIVATE ${ADIT_COMMON_HEADERS})
@@ -26,17 +26,24 @@ function(adit_room name)
   endforeach()
 endfunction()
 
+# A program that rooms' headers and foreign targets are open to.
+#   adit_program(test_sensors COMMON adit_support FILES test_sick.cpp USES sensors HIDES nlohmann_json::nlohmann_json)
+# COMMON: the target whose precompiled headers it uses.
+function(adit_program name)
+  cmake_parse_arguments(PROGRAM "" "COMMON" "FILES;USES;HIDES" ${ARGN})
+  add_executable(${name} ${PROGRAM_FILES})
+  target_precompile_headers(${name} REUSE_FROM ${PROGRAM_COMMON})
+  list(TRANSFORM PROGRAM_USES PREPEND adit_)
+  target_link_libraries(${name} PRIVATE ${PROGRAM_USES} ${PROGRAM_HIDES})
+endfunction()
+
 # The tests of one room: one program, each test registered with ctest under the room's name; with WHOLE the program is one
 # test, for suites whose tests share one costly start.
 #   adit_tests(sensors FILES test_sick.cpp USES sensors HIDES nlohmann_json::nlohmann_json)
 function(adit_tests name)
   cmake_parse_arguments(ROOM "WHOLE" "" "FILES;USES;HIDES" ${ARGN})
-  add_executable(test_${name} ${ROOM_FILES})
-  target_precompile_headers(test_${name} REUSE_FROM adit_support)
-  foreach(used ${ROOM_USES})
-    target_link_libraries(test_${name} PRIVATE adit_${used})
-  endforeach()
-  target_link_libraries(test_${name} PRIVATE ${ROOM_HIDES} GTest::gtest_main GTest::gmock)
+  adit_program(test_${name} COMMON adit_support FILES ${ROOM_FILES} USES ${ROOM_USES}
+               HIDES ${ROOM_HIDES} GTest::gtest_main GTest::gmock)
   if(ROOM_WHOLE)
     add_test(NAME ${name} COMMAND test_${name})
   else()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/rig_picture.h"
+#include "cli/rig_command.h"
 
 #include "cli/scenario.h"
 #include "eval/rig_picture.h"
