@@ -21,6 +21,7 @@ struct ScoreInput {
   std::string map;           // a folder as `adit map` writes it, or any of:
   std::string trajectory, points, grid, surface;
   double volume_m3 = -1;  // -1: not given
+  std::string laser;      // whose path the trajectory is; empty: the body's
   std::string relations;  // instead of world and truth, for a real log
   std::string explain;    // a metric's name, instead of all
 };

@@ -59,6 +59,7 @@ void add_score(CLI::App& app, Words& w) {
   score->add_option("--truth", w.score.truth, "truth.h5 of the recording");
   score->add_option("--map", w.score.map, "folder of a map as 'adit map' writes it");
   score->add_option("--trajectory", w.score.trajectory, "somebody's path: TUM, or 't x y yaw' a line");
+  score->add_option("--laser", w.score.laser, "the path is that of this laser of the rig, not of the vehicle's body");
   score->add_option("--points", w.score.points, "with it, its points: PLY");
   score->add_option("--grid", w.score.grid, "its occupancy grid: the yaml of ROS map_server");
   score->add_option("--surface", w.score.surface, "its closed surface: PLY");

@@ -21,11 +21,25 @@ void need(const std::string& value, const std::string& option) {
 }
 
 bool has_parts(const ScoreInput& in) {
-  return !in.trajectory.empty() || !in.points.empty() || !in.grid.empty() || !in.surface.empty() || in.volume_m3 >= 0;
+  return !in.trajectory.empty() || !in.laser.empty() || !in.points.empty() || !in.grid.empty() || !in.surface.empty() ||
+         in.volume_m3 >= 0;
+}
+
+// The body's path from that of a laser where its nominal mount puts it; M stays the frame that the path is told in.
+void lay_on_body(Trajectory& path, const Rig& nominal, const std::string& laser) {
+  std::string known;
+  for (const Mount& mount : nominal.mounts) {
+    known += (known.empty() ? "" : ", ") + mount.name;
+    if (mount.name != laser) continue;
+    const Pose X_SB = mount.X_BS.inverse();
+    for (Pose& X : path.X_WB) X = X * X_SB;
+    return;
+  }
+  throw Error("score: --laser " + laser + ": the rig '" + nominal.name + "' has " + known);
 }
 
 // Somebody's result, as far as it was given.
-Estimate estimate_of(const ScoreInput& in) {
+Estimate estimate_of(const ScoreInput& in, const Rig& nominal) {
   if (!in.map.empty()) {
     if (has_parts(in)) throw Error("score: --map is a whole result; give either it or its parts");
     return load_estimate(in.map);
@@ -34,6 +48,7 @@ Estimate estimate_of(const ScoreInput& in) {
   Estimate e;
   e.method = fs::path(in.trajectory).stem().string();
   e.path = read_tum(in.trajectory);
+  if (!in.laser.empty()) lay_on_body(e.path, nominal, in.laser);
   if (!in.points.empty()) e.points = read_points(in.points);
   if (!in.grid.empty()) e.grid = read_grid(in.grid);
   if (!in.surface.empty()) e.surface = read_mesh(in.surface);
@@ -51,13 +66,13 @@ Score score_world(const ScoreInput& in, const ScoreSettings& settings, Console& 
                 Fault::not_comparable);
   const fs::path log = fs::path(in.truth).parent_path() / "log.h5";
   const Rig nominal = fs::exists(log) ? load_log(log.string()).rig : truth.rig;
-  return score_map(world, truth, nominal, estimate_of(in), settings, console.progress());
+  return score_map(world, truth, nominal, estimate_of(in, nominal), settings, console.progress());
 }
 
 Score score_real_log(const ScoreInput& in, const ScoreSettings& settings) {
   need(in.trajectory, "--trajectory");
-  if (!in.world.empty() || !in.truth.empty())
-    throw Error("score: --relations are the truth of a real log; --world and --truth do not go with them");
+  if (!in.world.empty() || !in.truth.empty() || !in.laser.empty())
+    throw Error("score: --relations are the truth of a real log; --world, --truth and --laser do not go with them");
   return score_relations(read_relations(in.relations), read_tum(in.trajectory), settings.max_diff_s);
 }
 

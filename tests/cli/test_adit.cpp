@@ -181,6 +181,28 @@ TEST_F(TinyRun, SomebodysPartsScoreAsTheWholeMapDoes) {
   fs::remove_all(dir);
 }
 
+TEST_F(TinyRun, ThePathOfALaserIsLaidOnTheBodyWhereItIsSaidSo) {
+  const std::string dir = fresh_folder("laser");
+  // A CARMEN log knows no mounts: its map is in the frame of the laser, half a metre ahead of the body.
+  ASSERT_EQ(adit_says("convert " + out_ + "/recording/log.h5 " + dir + "/robot.log").exit_code, 0);
+  ASSERT_EQ(adit_says("map " + dir + "/robot.log --quiet -o " + dir).exit_code, 0);
+  const std::string words = "score --world " + out_ + "/world --truth " + out_ + "/recording/truth.h5 --quiet -o " +
+                            dir + " --trajectory " + dir + "/map/trajectory.tum";
+  const auto ate_m = [&](const std::string& more) {
+    const Answer said = adit_says(words + more);
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    return nlohmann::json::parse(read_text(dir + "/score.json"))["trajectory"]["se3"]["ate_xy_rmse_m"]["value"]
+        .get<double>();
+  };
+  const double right_m = ate_m(" --laser front");
+  EXPECT_LT(right_m, 0.2);              // the bar of the whole map
+  EXPECT_GT(ate_m(""), right_m + 0.1);  // the lever of 0.5 m turns with the cart, less what a rigid fit takes of it
+  const Answer unknown = adit_says(words + " --laser rear");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("front"));
+  fs::remove_all(dir);
+}
+
 TEST_F(TinyRun, RunsAreComparedBySeedAndAFailedOneCounts) {
   const std::string dir = fresh_folder("compare"), failed = dir + "/failed";
   write_text(failed + "/scenario.toml", read_text(out_ + "/scenario.toml") + "\n");
