@@ -49,10 +49,10 @@ struct Range {
 };
 
 /// Indices of the axes within [low, high], a superset by at most one at each end, clipped to the grid.
-Range axes_within(std::int64_t low, std::int64_t high, const Dexels& like, int count) {
+Range axes_within(double low, double high, const Dexels& like, int count) {
   const double per_unit = 1 / (units_per_m * like.cell_m);
-  const double first = std::floor(static_cast<double>(low) * per_unit - 0.5);
-  const double last = std::ceil(static_cast<double>(high) * per_unit - 0.5);
+  const double first = std::floor(low * per_unit - 0.5);
+  const double last = std::ceil(high * per_unit - 0.5);
   return {static_cast<int>(std::clamp(first, 0.0, static_cast<double>(count))),
           static_cast<int>(std::clamp(last + 1, 0.0, static_cast<double>(count)))};
 }
@@ -82,8 +82,8 @@ void crossings(Corner a, Corner b, Corner c, const Dexels& like, const Axes& axe
   }
   const auto [x_low, x_high] = std::minmax({a.x, b.x, c.x});
   const auto [y_low, y_high] = std::minmax({a.y, b.y, c.y});
-  columns = overlap(columns, axes_within(x_low, x_high, like, like.width));
-  rows = overlap(rows, axes_within(y_low, y_high, like, like.height));
+  columns = overlap(columns, axes_within(static_cast<double>(x_low), static_cast<double>(x_high), like, like.width));
+  rows = overlap(rows, axes_within(static_cast<double>(y_low), static_cast<double>(y_high), like, like.height));
   const std::int64_t tie_a = tie(b, c), tie_b = tie(c, a), tie_c = tie(a, b);
   const double scale = 1 / static_cast<double>(area);
   for (int j = rows.begin; j < rows.end; ++j)
@@ -214,7 +214,7 @@ Dexels dexels_of(const Mesh& mesh, const Dexels& like) {
   for (std::uint32_t f = 0; f < mesh.face.size(); ++f) {
     const auto [low, high] =
         std::minmax({corner[mesh.face[f][0]].y, corner[mesh.face[f][1]].y, corner[mesh.face[f][2]].y});
-    const Range rows = axes_within(low, high, like, like.height);
+    const Range rows = axes_within(static_cast<double>(low), static_cast<double>(high), like, like.height);
     for (int band = rows.begin / tile_cells; band * tile_cells < rows.end; ++band) faces[band].push_back(f);
   }
   struct Crossing {
@@ -295,34 +295,40 @@ constexpr std::array<std::uint8_t, 64> crossed_faces = [] {
   return table;
 }();
 
-/// Where the shadow of a tetrahedron on the plane lies along the row at y: a superset by a few units.
+/// Which columns of each row of a tile the shadow of a tetrahedron covers: a superset by a few. Loops without branches
+/// over the rows, edge by edge, which the compiler turns into vectors.
 struct Shadow {
-  explicit Shadow(const std::array<Corner, 4>& corner) : corner(corner) {
-    for (int e = 0; e < 6; ++e) {
-      const Corner &a = corner[edge_ends[e][0]], &b = corner[edge_ends[e][1]];
-      slope[e] = a.y == b.y ? 0 : static_cast<double>(b.x - a.x) / static_cast<double>(b.y - a.y);
-    }
-  }
+  std::array<int, tile_cells> begin, end;  // begin >= end: none
 
-  std::pair<std::int64_t, std::int64_t> along(std::int64_t y) const {
-    constexpr std::int64_t slack = 4;  // units: axes on an edge, and the rounding of the products below
-    std::int64_t low = std::numeric_limits<std::int64_t>::max(), high = std::numeric_limits<std::int64_t>::min();
-    const auto reach = [&](std::int64_t x) { low = std::min(low, x), high = std::max(high, x); };
-    for (int e = 0; e < 6; ++e) {
-      const Corner &a = corner[edge_ends[e][0]], &b = corner[edge_ends[e][1]];
-      if (std::min(a.y, b.y) > y + slack || std::max(a.y, b.y) < y - slack) continue;
-      if (std::abs(a.y - b.y) <= 2 * slack) {  // along the row
-        reach(a.x), reach(b.x);
-      } else {
-        const std::int64_t within = std::clamp(y, std::min(a.y, b.y), std::max(a.y, b.y));
-        reach(a.x + static_cast<std::int64_t>(slope[e] * static_cast<double>(within - a.y)));
+  Shadow(const std::array<Corner, 4>& corner, std::span<const std::int64_t> row_y, Range columns, const Dexels& like) {
+    constexpr double slack = 4;  // units: axes on an edge, and rounding
+    constexpr double none = 1e18;
+    const size_t rows = row_y.size();
+    std::array<double, tile_cells> y, low, high;
+    for (size_t r = 0; r < rows; ++r) y[r] = static_cast<double>(row_y[r]), low[r] = none, high[r] = -none;
+    for (const auto& ends : edge_ends) {
+      const Corner &a = corner[ends[0]], &b = corner[ends[1]];
+      const auto ax = static_cast<double>(a.x), ay = static_cast<double>(a.y), bx = static_cast<double>(b.x),
+                 by = static_cast<double>(b.y);
+      const bool flat = std::abs(ay - by) <= 2 * slack;  // along the row
+      const double y_low = std::min(ay, by), y_high = std::max(ay, by), slope = flat ? 0 : (bx - ax) / (by - ay);
+      const double x_low = flat ? std::min(ax, bx) : ax, x_high = flat ? std::max(ax, bx) : ax;
+      for (size_t r = 0; r < rows; ++r) {
+        const double within = y[r] < y_low ? y_low : y[r] > y_high ? y_high : y[r];
+        const double off = slope * (within - ay), miss = std::abs(y[r] - within) <= slack ? 0 : 2 * none;
+        const double x0 = x_low + off + miss, x1 = x_high + off - miss;
+        low[r] = x0 < low[r] ? x0 : low[r];
+        high[r] = x1 > high[r] ? x1 : high[r];
       }
     }
-    return {low - slack, high + slack};
+    const double per_unit = 1 / (units_per_m * like.cell_m), first = columns.begin, last = columns.end;
+    for (size_t r = 0; r < rows; ++r) {
+      const double from = std::floor((low[r] - slack) * per_unit - 0.5),
+                   to = std::ceil((high[r] + slack) * per_unit + 0.5);
+      begin[r] = static_cast<int>(from < first ? first : from > last ? last : from);
+      end[r] = static_cast<int>(to < first ? first : to > last ? last : to);
+    }
   }
-
-  const std::array<Corner, 4>& corner;
-  double slope[6];
 };
 
 }  // namespace
@@ -331,8 +337,10 @@ void DexelUnion::Impl::add_to_tile(size_t t, const std::array<Corner, 4>& corner
   const int first_i = static_cast<int>(t % across) * tile_cells, first_j = static_cast<int>(t / across) * tile_cells;
   const auto [x_low, x_high] = std::minmax({corner[0].x, corner[1].x, corner[2].x, corner[3].x});
   const auto [y_low, y_high] = std::minmax({corner[0].y, corner[1].y, corner[2].y, corner[3].y});
-  const Range columns = overlap({first_i, first_i + tile_cells}, axes_within(x_low, x_high, grid, grid.width));
-  const Range rows = overlap({first_j, first_j + tile_cells}, axes_within(y_low, y_high, grid, grid.height));
+  const Range columns = overlap({first_i, first_i + tile_cells},
+                                axes_within(static_cast<double>(x_low), static_cast<double>(x_high), grid, grid.width));
+  const Range rows = overlap({first_j, first_j + tile_cells},
+                             axes_within(static_cast<double>(y_low), static_cast<double>(y_high), grid, grid.height));
   // cross() of each edge is a part by row less a part by column.
   std::int64_t by_column[6][tile_cells], ties[6];
   for (int e = 0; e < 6; ++e) {
@@ -341,11 +349,11 @@ void DexelUnion::Impl::add_to_tile(size_t t, const std::array<Corner, 4>& corner
     for (int i = columns.begin; i < columns.end; ++i) by_column[e][i - first_i] = (b.y - a.y) * (axes.x[i] - a.x);
   }
   Tile& tile = tiles[t];
-  const Shadow shadow(corner);
+  if (rows.begin >= rows.end) return;
+  const Shadow shadow(corner, std::span(axes.y).subspan(rows.begin, rows.end - rows.begin), columns, grid);
   for (int j = rows.begin; j < rows.end; ++j) {
-    const auto [low, high] = shadow.along(axes.y[j]);
-    if (low > high) continue;
-    const Range in_row = overlap(columns, axes_within(low, high, grid, grid.width));
+    const Range in_row = {shadow.begin[j - rows.begin], shadow.end[j - rows.begin]};
+    if (in_row.begin >= in_row.end) continue;
     std::int64_t by_row[6];
     for (int e = 0; e < 6; ++e) {
       const Corner &a = corner[edge_ends[e][0]], &b = corner[edge_ends[e][1]];
@@ -399,8 +407,8 @@ void DexelUnion::add(std::span<const Tetrahedron> tetrahedra) {
     const auto& c = corner[n];
     const auto [x_low, x_high] = std::minmax({c[0].x, c[1].x, c[2].x, c[3].x});
     const auto [y_low, y_high] = std::minmax({c[0].y, c[1].y, c[2].y, c[3].y});
-    const Range columns = axes_within(x_low, x_high, grid, grid.width),
-                rows = axes_within(y_low, y_high, grid, grid.height);
+    const Range columns = axes_within(static_cast<double>(x_low), static_cast<double>(x_high), grid, grid.width),
+                rows = axes_within(static_cast<double>(y_low), static_cast<double>(y_high), grid, grid.height);
     if (columns.begin >= columns.end) continue;
     for (int tj = rows.begin / tile_cells; tj * tile_cells < rows.end; ++tj)
       for (int ti = columns.begin / tile_cells; ti * tile_cells < columns.end; ++ti)

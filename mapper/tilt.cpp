@@ -234,6 +234,29 @@ std::pair<double, double> write_beam(const Problem& problem, const TiltBeam& bea
   return std::isfinite(residual) ? std::pair{root * root * residual * residual, root * root} : std::pair{0.0, 0.0};
 }
 
+/// The same heights on nodes node_m apart; where a neighbour of the old nodes has none there is none.
+Lattice resampled(const Lattice& from, double node_m) {
+  Lattice to = from;
+  to.node_m = node_m;
+  const double step = node_m / from.node_m;
+  to.width = static_cast<int>((from.width - 2) / step) + 2;
+  to.height = static_cast<int>((from.height - 2) / step) + 2;
+  const size_t all = 2 * static_cast<size_t>(to.width) * to.height;
+  to.number.assign(all, -1);
+  to.value.assign(all, std::numeric_limits<double>::quiet_NaN());
+  for (const bool roof : {false, true})
+    for (int j = 0; j < to.height; ++j)
+      for (int i = 0; i < to.width; ++i) {
+        const int i0 = std::min(static_cast<int>(i * step), from.width - 2),
+                  j0 = std::min(static_cast<int>(j * step), from.height - 2);
+        const double u = i * step - i0, v = j * step - j0;
+        const auto value = [&](int di, int dj) { return from.value[from.index(roof, i0 + di, j0 + dj)]; };
+        const auto along = [&](int dj) { return u > 0 ? (1 - u) * value(0, dj) + u * value(1, dj) : value(0, dj); };
+        to.value[to.index(roof, i, j)] = v > 0 ? (1 - v) * along(0) + v * along(1) : along(0);
+      }
+  return to;
+}
+
 /// Numbers the nodes that the beams need, and writes all equations at the present solution.
 SparseRows linearise(Problem& problem) {
   const auto& beams = problem.data.beams;
@@ -308,7 +331,7 @@ Problem state(const Log& log, const std::vector<double>& stamp_s, const std::vec
   const int controls = clock.controls();
   Motion motion{std::move(flat), std::move(clock), p_BH, std::vector<Tilt>(controls, Tilt::Zero())};
   const double reach_m = std::max(settings.forward_m, settings.sideways_m);
-  Lattice lattice = lattice_around(motion, reach_m, settings.node_m);
+  Lattice lattice = lattice_around(motion, reach_m, settings.node_m * settings.coarse);
   const size_t lasers = log.rig.mounts.size();
   Problem problem{settings,
                   std::move(data),
@@ -362,6 +385,7 @@ Fields fields(TiltSettings& s) {
       {"knot_s", &s.knot_s, "knots of the spline for z, pitch and roll while the vehicle moves", 0.02, 10},
       {"rest_knot_s", &s.rest_knot_s, "and while it stands", 0.02, 1000},
       {"node_m", &s.node_m, "lattice of the heights of floor and roof", 0.05, 5},
+      {"coarse", &s.coarse, "times node_m: the lattice of all iterations but the last", 1, 10},
       {"spacing_m", &s.spacing_m, "beams of a scan are thinned to this distance on the rock", 0, 5},
       {"forward_m", &s.forward_m, "how far ahead the forward vertical laser is used", 0.5, 100},
       {"sideways_m", &s.sideways_m, "how far aside the upward and downward lasers are used", 0.5, 100},
@@ -389,6 +413,7 @@ TiltSolution solve_tilt(const Log& log, const std::vector<double>& stamp_s, cons
   double operations = 0;
   for (int n = 0; n < settings.iterations; ++n) {
     progress("tilt", n, settings.iterations);
+    if (n + 1 == settings.iterations) problem.lattice = resampled(problem.lattice, settings.node_m);
     const SparseSolution solution = solve_least_squares(linearise(problem));
     operations = solution.factor_operations;
     take(problem, solution.x);

@@ -14,6 +14,7 @@ struct TiltSettings {
   double knot_s = 0.2;         // of the spline while the vehicle moves
   double rest_knot_s = 2;      // and while it stands
   double node_m = 0.25;        // lattice of the floor's and the roof's heights
+  double coarse = 2;           // times node_m: the lattice of all iterations but the last
   double spacing_m = 0.15;     // beams of a scan are thinned to this distance on the rock
   double forward_m = 6;        // use of the forward vertical laser, horizontally
   double sideways_m = 4;       // use of the upward and downward lasers, horizontally
@@ -41,7 +42,7 @@ struct TiltSolution {
 /// (bilinear between nodes, curvature prior) and a constant range error of each laser. Each beam that meets floor or
 /// roof is one equation, at its own instant; all lasers and all visits meet in the same nodes, so loops in height close
 /// by themselves. Ribs count as vertical with rib_sigma_deg: that holds roll. Solved by Gauss-Newton with a Cauchy
-/// kernel.
+/// kernel, on a coarse lattice until the last iteration: the motion hardly needs the fine one, its factor costs most.
 /// @param stamp_s  (n) of the horizontal laser, rising;  @param planar  (n) X_MB of the body, level
 /// x and y: what the planar poses fix is where the horizontal laser stands; the body moves under it as it pitches and
 /// rolls. The tilt of the whole is a gauge without gravity: the ribs fix it, else the start counts as level. A rig with
