@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/files.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
@@ -59,6 +60,49 @@ std::optional<double> number_or_none(const ordered_json& j) {
   return j.is_null() ? std::nullopt : std::optional(j.get<double>());
 }
 
+ordered_json json_of(const SolvedGraph& g) {
+  const Certificate& c = g.certificate;
+  return {{"start", g.start},
+          {"nodes", g.graph.node.size()},
+          {"edges", g.graph.edge.size()},
+          {"converged", g.converged},
+          {"iterations", g.iterations},
+          {"chi2", g.chi2},
+          {"certificate",
+           {{"of", "the optimum of sum tau |dt|^2 + kappa |dR|_F^2, tau = 2 / trace(cov_t), kappa = I_33"},
+            {"certified", c.certified},
+            {"stationary", c.stationary},
+            {"objective", c.objective},
+            {"gap_bound", c.gap_bound},
+            {"smallest_eigenvalue", c.smallest_eigenvalue},
+            {"threshold", c.threshold},
+            {"objective_of_these_poses", c.given_objective},
+            {"distance_rms_m", c.distance_rms_m},
+            {"distance_max_m", c.distance_max_m},
+            {"distance_max_rad", c.distance_max_rad}}}};
+}
+
+SolvedGraph solved_of(const ordered_json& j) {
+  SolvedGraph g;
+  g.start = j.at("start").get<std::string>();
+  g.converged = j.at("converged").get<bool>();
+  g.iterations = j.at("iterations").get<int>();
+  g.chi2 = j.at("chi2").get<double>();
+  const ordered_json& c = j.at("certificate");
+  g.certificate.certified = c.at("certified").get<bool>();
+  g.certificate.stationary = c.at("stationary").get<bool>();
+  const std::pair<const char*, double*> numbers[] = {{"objective", &g.certificate.objective},
+                                                     {"gap_bound", &g.certificate.gap_bound},
+                                                     {"smallest_eigenvalue", &g.certificate.smallest_eigenvalue},
+                                                     {"threshold", &g.certificate.threshold},
+                                                     {"objective_of_these_poses", &g.certificate.given_objective},
+                                                     {"distance_rms_m", &g.certificate.distance_rms_m},
+                                                     {"distance_max_m", &g.certificate.distance_max_m},
+                                                     {"distance_max_rad", &g.certificate.distance_max_rad}};
+  for (const auto& [key, value] : numbers) *value = c.at(key).get<double>();
+  return g;
+}
+
 // A list with one entry a line: readable, and small beside a full indentation.
 template <class T>
 std::string lines(const std::vector<T>& entries) {
@@ -74,6 +118,7 @@ std::string map_text(const Estimate& e) {
       {"volume_sigma_m3", json_of(e.volume_sigma_m3).dump()},
       {"converged", ordered_json(e.converged).dump()},
       {"notes", ordered_json(e.notes).dump()},
+      {"graph", e.graph ? json_of(*e.graph).dump(4) : "null"},
       {"degenerate", lines(e.degenerate)},
       {"closures", lines(e.closures)},
       {"rounds", lines(e.rounds)}};
@@ -91,6 +136,7 @@ void read_map_text(const std::string& file, Estimate& e) {
     e.volume_sigma_m3 = number_or_none(j.at("volume_sigma_m3"));
     e.converged = j.at("converged").get<bool>();
     e.notes = j.at("notes").get<std::vector<std::string>>();
+    if (j.contains("graph") && !j.at("graph").is_null()) e.graph = solved_of(j.at("graph"));
     for (const ordered_json& d : j.at("degenerate"))
       e.degenerate.push_back({d.at("from_s").get<double>(), d.at("to_s").get<double>(), d.at("sigma_m").get<double>()});
     for (const ordered_json& c : j.at("closures")) e.closures.push_back(closure_of(c));
@@ -124,15 +170,32 @@ std::vector<Pose2> load_planar(const std::string& file, size_t expected) {
 
 }  // namespace
 
+void save_graph(const std::string& dir, const SolvedGraph& g) {
+  std::error_code absent;
+  for (const char* file :
+       {"/trajectory.tum", "/open_loop.tum", "/planar.tum", "/grid.pgm", "/grid.yaml", "/points.ply", "/surface.ply"})
+    fs::remove(dir + file, absent);
+  write_g2o(dir + "/graph.g2o", g.graph, g.id);
+  std::string rows;
+  for (size_t k = 0; k < g.covariance.size(); ++k) {
+    const Eigen::Matrix3d& C = g.covariance[k];
+    rows += fmt::format("{} {} {} {} {} {} {}\n", g.id[k], C(0, 0), C(0, 1), C(0, 2), C(1, 1), C(1, 2), C(2, 2));
+  }
+  write_text(dir + "/covariance.txt", rows);
+  write_text(dir + "/map.json", ordered_json{{"method", "graph"}, {"graph", json_of(g)}}.dump(2) + "\n");
+}
+
 void save_estimate(const std::string& dir, const Estimate& e) {
   write_tum(dir + "/trajectory.tum", e.path);
   save_planar(dir + "/open_loop.tum", e.path.stamp_s, e.open_loop);
   save_planar(dir + "/planar.tum", e.path.stamp_s, e.planar);
   std::error_code absent;
-  for (const char* file : {"/grid.pgm", "/grid.yaml", "/points.ply", "/surface.ply"}) fs::remove(dir + file, absent);
+  for (const char* file : {"/grid.pgm", "/grid.yaml", "/points.ply", "/surface.ply", "/graph.g2o"})
+    fs::remove(dir + file, absent);
   if (!e.grid.log_odds.empty()) write_grid(dir + "/grid.pgm", e.grid);
   if (e.points.size() > 0) write_points(dir + "/points.ply", e.points);
   if (!e.surface.face.empty()) write_mesh(dir + "/surface.ply", e.surface);
+  if (e.graph) write_g2o(dir + "/graph.g2o", e.graph->graph, e.graph->id);
   write_text(dir + "/map.json", map_text(e));
 }
 
@@ -145,6 +208,11 @@ Estimate load_estimate(const std::string& dir) {
   if (fs::exists(dir + "/grid.yaml")) e.grid = read_grid(dir + "/grid.yaml");
   if (fs::exists(dir + "/points.ply")) e.points = read_points(dir + "/points.ply");
   if (fs::exists(dir + "/surface.ply")) e.surface = read_mesh(dir + "/surface.ply");
+  if (e.graph && fs::exists(dir + "/graph.g2o")) {
+    GraphFile file = read_g2o(dir + "/graph.g2o");
+    e.graph->graph = std::move(file.graph);
+    e.graph->id = std::move(file.id);
+  }
   return e;
 }
 

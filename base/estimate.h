@@ -4,6 +4,7 @@
 #include "base/grid.h"
 #include "base/mesh.h"
 #include "base/points.h"
+#include "base/pose_graph.h"
 #include "base/trajectory.h"
 
 #include <optional>
@@ -43,6 +44,7 @@ struct Estimate {
   std::vector<AlignmentRound> rounds;
   bool converged = false;  // the correspondences repeated
   std::vector<Closure> closures;
+  std::optional<SolvedGraph> graph;  // that `planar` is laid on; none where the method has no pose graph
   std::vector<DegenerateStretch> degenerate;
   Grid grid;
   PointCloud points;
@@ -52,10 +54,14 @@ struct Estimate {
   std::vector<std::string> notes;  // what was dropped or could not be done, one sentence each
 };
 
-/// DIR/trajectory.tum open_loop.tum planar.tum grid.pgm grid.yaml points.ply surface.ply map.json. What the estimate
+/// DIR/trajectory.tum open_loop.tum planar.tum grid.pgm grid.yaml points.ply surface.ply graph.g2o map.json. What the estimate
 /// lacks has no file. map.json comes last: a folder that holds it is whole.
 void save_estimate(const std::string& dir, const Estimate& estimate);
 /// The same; the grid's cells come back as free, occupied or unknown. A missing or foreign file is an Error.
 Estimate load_estimate(const std::string& dir);
+
+/// The same for a graph that is a map of its own: DIR/graph.g2o, covariance.txt ("id" and the upper triangle of each
+/// node's covariance) and map.json; what an earlier map left there is removed.
+void save_graph(const std::string& dir, const SolvedGraph& graph);
 
 }  // namespace adit

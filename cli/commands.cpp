@@ -11,6 +11,7 @@
 #include "eval/compare.h"
 #include "eval/explain.h"
 #include "eval/render.h"
+#include "mapper/certificate.h"
 
 #include <nlohmann/json.hpp>
 
@@ -50,6 +51,14 @@ ScoredRun scored_run(const std::string& out) {
   run.settings = resolved_toml(s);
   if (fs::exists(out + "/score.json")) run.score = read_score(out + "/score.json");
   return run;
+}
+
+void print_graph(const SolvedGraph& g, Console& console) {
+  const Certificate& c = g.certificate;
+  console.result(std::to_string(g.graph.node.size()) + " nodes, " + std::to_string(g.graph.edge.size()) +
+                 " edges, from the " + g.start + " start: chi2 " + std::to_string(g.chi2) + " after " +
+                 std::to_string(g.iterations) + " iterations" + (g.converged ? "" : ", not converged"));
+  console.result("isotropic objective " + std::to_string(c.objective) + ": " + verdict(c));
 }
 
 // The scenario that a run folder was made from; the defaults where the folder has none.
@@ -175,9 +184,11 @@ int drive_command(const std::string& scenario, const std::string& world_dir, con
 int map_command(const std::string& recording, const Common& common, Console& console) {
   Scenario s;
   for (const std::string& a : common.assignments) set_field(fields(s), a);
-  const Log log = load_any_log(recording);
   Stages stages(out_of(common, fs::path(recording).stem().string()), console);
-  stages.map(s.map, log);
+  if (const std::string ending = fs::path(recording).extension().string(); ending == ".g2o" || ending == ".graph")
+    print_graph(stages.map(s.map, read_g2o(recording)), console);
+  else
+    stages.map(s.map, load_any_log(recording));
   stages.save_timing();
   console.result("map: " + stages.out() + "/map");
   if (console.wants_json())

@@ -85,7 +85,7 @@ void add_commands(CLI::App& app, Words& w) {
   drive->add_option("--world", w.world, "folder of a mine made before");
   add_common(drive, w, true);
   CLI::App* map = app.add_subcommand("map", "a map from a recording alone");
-  map->add_option("recording", w.first, "log.h5, or a CARMEN log (.log, .clf)")->required();
+  map->add_option("recording", w.first, "log.h5, a CARMEN log (.log, .clf), or a pose graph (.g2o, .graph)")->required();
   add_common(map, w, false);
   add_score(app, w);
   CLI::App* compare = app.add_subcommand("compare", "many runs: medians, intervals, paired differences, failures");

@@ -127,6 +127,16 @@ Estimate Stages::map(const MapSettings& settings, const Log& log) {
   return estimate;
 }
 
+SolvedGraph Stages::map(const MapSettings& settings, const GraphFile& graph) {
+  SolvedGraph solved;
+  timed("map", [&] {
+    solved = solve_graph(graph, settings.graph, console_.progress());
+    save_graph(out_ + "/map", solved);
+    forget({"score.json", "report"});
+  });
+  return solved;
+}
+
 Score Stages::score(const ScoreSettings& settings, const World& world, const Truth& truth, const Rig& nominal,
                     const Estimate& estimate) {
   Score score;

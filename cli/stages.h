@@ -29,6 +29,8 @@ class Stages {
   };
   Driven drive(const Scenario& s, const World& world);
   Estimate map(const MapSettings& settings, const Log& log);
+  /// The optimum of a bare pose graph: OUT/map/graph.g2o, covariance.txt and map.json.
+  SolvedGraph map(const MapSettings& settings, const GraphFile& graph);
   Score score(const ScoreSettings& settings, const World& world, const Truth& truth, const Rig& nominal,
               const Estimate& estimate);
   void report(const Scenario& s, const World& world, const Recording& recording, const Estimate& estimate,

@@ -8,6 +8,7 @@
 #include "mapper/odometry.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct Aligned {
   std::vector<AlignmentRound> rounds;
   bool converged = false;         // the correspondences repeated those of the round before
   std::vector<Closure> closures;  // scan indices
+  std::optional<SolvedGraph> graph;  // that X_MB is spread from
   std::vector<std::string> notes;
 };
 

@@ -31,18 +31,23 @@ struct Residual {
   Matrix3 J_j;
 };
 
-Vector3 error_of(const Relative& edge, const Pose2& X_i, const Pose2& X_j) {
-  const Pose2 E = edge.X_ij.inverse() * (X_i.inverse() * X_j);
-  return {E.x_m, E.y_m, E.yaw_rad};
+double turned(double yaw_rad, bool chordal) {
+  return chordal ? 2 * std::sin(yaw_rad / 2) : yaw_rad;
 }
 
-Residual residual_of(const Relative& edge, const Pose2& X_i, const Pose2& X_j) {
+Vector3 error_of(const Relative& edge, const Pose2& X_i, const Pose2& X_j, bool chordal) {
+  const Pose2 E = edge.X_ij.inverse() * (X_i.inverse() * X_j);
+  return {E.x_m, E.y_m, turned(E.yaw_rad, chordal)};
+}
+
+Residual residual_of(const Relative& edge, const Pose2& X_i, const Pose2& X_j, bool chordal) {
   const Pose2 P = X_i.inverse() * X_j, E = edge.X_ij.inverse() * P;
-  Residual r{{E.x_m, E.y_m, E.yaw_rad}, Matrix3::Zero(), turn(E.yaw_rad)};
+  Residual r{{E.x_m, E.y_m, turned(E.yaw_rad, chordal)}, Matrix3::Zero(), turn(E.yaw_rad)};
   Matrix3 D = -Matrix3::Identity();
   D(0, 2) = P.y_m;
   D(1, 2) = -P.x_m;
   r.J_i = turn(-edge.X_ij.yaw_rad) * D;
+  if (chordal) r.J_i.row(2) *= std::cos(E.yaw_rad / 2), r.J_j.row(2) *= std::cos(E.yaw_rad / 2);
   return r;
 }
 
@@ -50,11 +55,11 @@ double kernel_width(const PoseGraph& graph, size_t k) {
   return graph.kernel.empty() ? 0 : graph.kernel[k];
 }
 
-double cost_of(const PoseGraph& graph, const std::vector<Pose2>& node) {
+double cost_of(const PoseGraph& graph, const std::vector<Pose2>& node, bool chordal) {
   double cost = 0;
   for (size_t k = 0; k < graph.edge.size(); ++k) {
     const Relative& edge = graph.edge[k];
-    const Vector3 e = error_of(edge, node[edge.i], node[edge.j]);
+    const Vector3 e = error_of(edge, node[edge.i], node[edge.j], chordal);
     const double c = e.dot(edge.information * e), w = kernel_width(graph, k);
     cost += w > 0 ? w * w * std::log1p(c / (w * w)) : c;
   }
@@ -78,7 +83,7 @@ struct Normal {
   Eigen::VectorXd b;
 };
 
-Normal normal_equations(const PoseGraph& graph, const std::vector<Pose2>& node, bool use_kernels) {
+Normal normal_equations(const PoseGraph& graph, const std::vector<Pose2>& node, bool use_kernels, bool chordal) {
   const int n = 3 * (static_cast<int>(node.size()) - 1);
   Normal normal{Sparse(n, n), Eigen::VectorXd::Zero(n)};
   std::vector<Eigen::Triplet<double>> entries;
@@ -93,7 +98,7 @@ Normal normal_equations(const PoseGraph& graph, const std::vector<Pose2>& node, 
   for (int d = 0; d < n; ++d) entries.emplace_back(d, d, 0.0);  // the diagonal is there, whatever the edges are
   for (size_t k = 0; k < graph.edge.size(); ++k) {
     const Relative& edge = graph.edge[k];
-    const Residual r = residual_of(edge, node[edge.i], node[edge.j]);
+    const Residual r = residual_of(edge, node[edge.i], node[edge.j], chordal);
     const double w = use_kernels ? kernel_width(graph, k) : 0;
     const double weight = w > 0 ? 1 / (1 + r.e.dot(edge.information * r.e) / (w * w)) : 1;
     const Matrix3 H = weight * edge.information;
@@ -126,15 +131,46 @@ bool factorise(Factor& factor, Sparse A, double damping) {
   return factor.info() == Eigen::Success && factor.vectorD().minCoeff() > 0;
 }
 
-void describe(const PoseGraph& graph, GraphSolution& solution) {
-  solution.chi2 = cost_of(graph, solution.node);
+void describe(const PoseGraph& graph, bool chordal, GraphSolution& solution) {
+  solution.chi2 = cost_of(graph, solution.node, chordal);
   for (size_t k = 0; k < graph.edge.size(); ++k) {
     const Relative& edge = graph.edge[k];
-    const Vector3 e = error_of(edge, solution.node[edge.i], solution.node[edge.j]);
+    const Vector3 e = error_of(edge, solution.node[edge.i], solution.node[edge.j], chordal);
     const double c = e.dot(edge.information * e), w = kernel_width(graph, k);
     solution.edge_chi2.push_back(c);
     solution.edge_weight.push_back(w > 0 ? 1 / (1 + c / (w * w)) : 1);
   }
+}
+
+/// The entries of A^-1 where the factor L D L^T of A has entries, laid out as L's columns (diagonal left out), and its
+/// diagonal; all in the factor's order of unknowns.
+struct SelectedInverse {
+  std::vector<double> below, diagonal;
+};
+
+SelectedInverse selected_inverse(const Factor& factor) {
+  const Sparse L = factor.matrixL();
+  const Eigen::VectorXd D = factor.vectorD();
+  const int n = static_cast<int>(L.cols());
+  const auto *start = L.outerIndexPtr(), *row = L.innerIndexPtr();
+  const double* value = L.valuePtr();
+  SelectedInverse Z{std::vector<double>(L.nonZeros()), std::vector<double>(n)};
+  const auto entry = [&](int i, int j) {  // i >= j, within the pattern
+    if (i == j) return Z.diagonal[j];
+    return Z.below[std::lower_bound(row + start[j], row + start[j + 1], i) - row];
+  };
+  for (int j = n - 1; j >= 0; --j) {
+    const int first = start[j] + (row[start[j]] == j), last = start[j + 1];
+    for (int a = first; a < last; ++a) {
+      double sum = 0;
+      for (int k = first; k < last; ++k) sum -= value[k] * entry(std::max(row[a], row[k]), std::min(row[a], row[k]));
+      Z.below[a] = sum;
+    }
+    double sum = 1 / D[j];
+    for (int k = first; k < last; ++k) sum -= value[k] * Z.below[k];
+    Z.diagonal[j] = sum;
+  }
+  return Z;
 }
 
 [[noreturn]] void singular() {
@@ -168,10 +204,10 @@ GraphSolution solve(const PoseGraph& graph, const GraphSettings& settings) {
     solution.converged = true;
     return solution;
   }
-  double cost = cost_of(graph, solution.node), damping = 0;
+  double cost = cost_of(graph, solution.node, settings.chordal), damping = 0;
   Factor factor;
   while (solution.iterations < settings.max_iterations && !solution.converged) {
-    const Normal normal = normal_equations(graph, solution.node, true);
+    const Normal normal = normal_equations(graph, solution.node, true, settings.chordal);
     if (solution.iterations == 0) factor.analyzePattern(normal.A);
     ++solution.iterations;
     // Gauss-Newton as long as it descends; else shorter and shorter steps down the gradient.
@@ -179,7 +215,7 @@ GraphSolution solve(const PoseGraph& graph, const GraphSettings& settings) {
       if (!factorise(factor, normal.A, damping)) singular();
       const Eigen::VectorXd step = factor.solve(normal.b);
       const std::vector<Pose2> next = moved(solution.node, step);
-      const double next_cost = cost_of(graph, next);
+      const double next_cost = cost_of(graph, next, settings.chordal);
       if (!std::isfinite(next_cost)) singular();
       accepted = next_cost <= cost;
       solution.converged = step.cwiseAbs().maxCoeff() < settings.tolerance_m || damping > 1e12;
@@ -192,15 +228,38 @@ GraphSolution solve(const PoseGraph& graph, const GraphSettings& settings) {
       }
     }
   }
-  describe(graph, solution);
+  describe(graph, settings.chordal, solution);
   return solution;
+}
+
+std::vector<Matrix3> covariances(const PoseGraph& graph) {
+  check(graph);
+  std::vector<Matrix3> result(graph.node.size(), Matrix3::Zero());
+  if (graph.node.size() < 2) return result;
+  const Normal normal = normal_equations(graph, graph.node, false, false);
+  Factor factor;
+  factor.analyzePattern(normal.A);
+  if (!factorise(factor, normal.A, 0)) singular();
+  const SelectedInverse Z = selected_inverse(factor);
+  const Sparse L = factor.matrixL();
+  const auto *start = L.outerIndexPtr(), *row = L.innerIndexPtr();
+  const auto& order = factor.permutationP().indices();  // of an unknown in the factor
+  for (size_t k = 1; k < result.size(); ++k)
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c <= r; ++c) {
+        const int a = order[3 * (k - 1) + r], b = order[3 * (k - 1) + c], i = std::max(a, b), j = std::min(a, b);
+        const double z =
+            i == j ? Z.diagonal[i] : Z.below[std::lower_bound(row + start[j], row + start[j + 1], i) - row];
+        result[k](r, c) = result[k](c, r) = z;
+      }
+  return result;
 }
 
 std::vector<Matrix3> relative_covariances(const PoseGraph& graph, std::span<const std::pair<int, int>> pairs) {
   check(graph);
   std::vector<Matrix3> result(pairs.size(), Matrix3::Zero());
   if (graph.node.size() < 2) return result;
-  const Normal normal = normal_equations(graph, graph.node, false);
+  const Normal normal = normal_equations(graph, graph.node, false, false);
   Factor factor;
   factor.analyzePattern(normal.A);
   if (!factorise(factor, normal.A, 0)) singular();

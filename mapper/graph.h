@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "base/frames.h"
+#include "base/pose_graph.h"
 
 #include <Eigen/Core>
 
@@ -11,14 +11,6 @@
 
 namespace adit {
 
-/// A measured pose of node j in node i. The information is about frame j, of the error e in X_true = X_ij * (ex, ey,
-/// eyaw): the convention of g2o's EDGE_SE2.
-struct Relative {
-  int i = 0, j = 0;
-  Pose2 X_ij;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
-};
-
 /// The matrix that carries a small motion (ex, ey, eyaw) in frame B into frame A: X * e * X^-1, first order.
 Eigen::Matrix3d adjoint(const Pose2& X_AB);
 
@@ -26,16 +18,10 @@ Eigen::Matrix3d adjoint(const Pose2& X_AB);
 /// informations must be invertible.
 Relative compose(const Relative& a, const Relative& b);
 
-/// Poses to be found and what was measured between them. Node 0 stays where it is.
-struct PoseGraph {
-  std::vector<Pose2> node;  // start values
-  std::vector<Relative> edge;
-  std::vector<double> kernel;  // (edge) or empty: width of the Cauchy kernel in standard deviations; 0 = quadratic
-};
-
 struct GraphSettings {
   int max_iterations = 100;
   double tolerance_m = 1e-9;  // converged when no component of the step is larger (m, rad)
+  bool chordal = false;       // the error in yaw is 2 sin(e / 2), the chord of the turn, in place of its angle e
 };
 
 struct GraphSolution {
@@ -56,5 +42,10 @@ GraphSolution solve(const PoseGraph& graph, const GraphSettings& settings = {});
 /// Covariance of the pose of node j in node i, about frame j, at the poses of the graph, kernels ignored, for each
 /// pair. The cost is one sparse solution of three columns for each node that is named.
 std::vector<Eigen::Matrix3d> relative_covariances(const PoseGraph& graph, std::span<const std::pair<int, int>> pairs);
+
+/// Covariance of the pose of every node in that of node 0, about the node's own frame, at the poses of the graph, kernels
+/// ignored; zero for node 0. One factorisation and the entries of the inverse that share its pattern, so that the cost
+/// grows as the factor does. Source: Takahashi, Fagan, Chin, "Formation of a sparse bus impedance matrix", 1973.
+std::vector<Eigen::Matrix3d> covariances(const PoseGraph& graph);
 
 }  // namespace adit

@@ -54,6 +54,7 @@ Fields fields(MapSettings& s) {
   append(all, "grid", fields(s.grid));
   append(all, "tilt", fields(s.tilt));
   append(all, "volume", fields(s.volume));
+  append(all, "graph", fields(s.graph));
   return all;
 }
 
@@ -77,6 +78,7 @@ Estimate make_map(const Log& log, const MapSettings& settings, const Progress& p
   estimate.rounds = std::move(aligned.rounds);
   estimate.converged = aligned.converged;
   estimate.closures = std::move(aligned.closures);
+  estimate.graph = std::move(aligned.graph);
   estimate.notes.insert(estimate.notes.end(), aligned.notes.begin(), aligned.notes.end());
 
   // Height is mostly one factorisation on one thread: the grid is drawn beside it.

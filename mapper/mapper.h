@@ -6,6 +6,7 @@
 #include "base/progress.h"
 #include "base/recording.h"
 #include "mapper/align.h"
+#include "mapper/graph_map.h"
 #include "mapper/occupancy.h"
 #include "mapper/odometry.h"
 #include "mapper/places.h"
@@ -28,6 +29,7 @@ struct MapSettings {
   OccupancySettings grid;
   TiltSettings tilt;
   VolumeSettings volume;
+  GraphMapSettings graph;  // of a bare graph
 };
 Fields fields(MapSettings& settings);
 

@@ -259,6 +259,19 @@ TEST(Words, ABadKeyNamesFileLineAndRemedyAndWritesNothing) {
   fs::remove_all(dir);
 }
 
+TEST_F(TinyRun, ItsGraphIsCertifiedAndASolutionOfItself) {
+  const auto map = nlohmann::json::parse(read_text(out_ + "/map/map.json"));
+  EXPECT_TRUE(map["graph"]["certificate"]["certified"].get<bool>());
+  const std::string again = fresh_folder("graph");
+  const Answer said = adit_says("map " + out_ + "/map/graph.g2o --json -o " + again);
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const auto graph = nlohmann::json::parse(said.out)["map"]["graph"];
+  EXPECT_TRUE(graph["certificate"]["certified"].get<bool>());
+  for (const char* count : {"nodes", "edges"}) EXPECT_EQ(graph[count], map["graph"][count]) << count;
+  EXPECT_TRUE(fs::exists(again + "/map/covariance.txt"));
+  fs::remove_all(again);
+}
+
 TEST(Words, BadInputHasExitCodeTwoAndOneClearLine) {
   for (const auto& [words, part] :
        std::map<std::string, std::string>{{"run no-such-scenario", "there are:"},
@@ -269,6 +282,7 @@ TEST(Words, BadInputHasExitCodeTwoAndOneClearLine) {
                                           {"run mini --set sensors.rig=none", "none"},
                                           {"run mini --set sensors.baud=1200", "1200"},
                                           {"map /no/such/log.h5", "no such file"},
+                                          {"map /no/such/graph.g2o", "graph.g2o"},
                                           {"score --world /none --truth /none --map /none", "/none"},
                                           {"report /none", "no such folder"},
                                           {"list nonsense", "there are"},

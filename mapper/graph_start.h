@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/pose_graph.h"
+
+#include <vector>
+
+namespace adit {
+
+/// What the isotropic objective takes of an edge: tau |t_j - t_i - R_i t_ij|^2 + kappa |R_j - R_i R_ij|_F^2, with tau =
+/// 2 / trace of the covariance of the translation and kappa = the information of the yaw.
+/// Source: Rosen et al., "SE-Sync", IJRR 2019.
+struct IsotropicWeight {
+  double tau, kappa;
+};
+IsotropicWeight isotropic_weight(const Relative& edge);
+
+/// Poses from the edges alone, node 0 where it is: along a tree of edges that follows the numbering of the nodes as far
+/// as it goes. The graph must be in one part.
+std::vector<Pose2> odometric_start(const PoseGraph& graph);
+
+/// Poses from the edges alone, node 0 where it is: the turns by one linear least squares over unit complex numbers
+/// whose length is left free, then the positions by another. Needs no guess and sees all loops at once.
+/// Source: Martinec and Pajdla, CVPR 2007; Carlone et al., ICRA 2015 ("chordal relaxation").
+std::vector<Pose2> chordal_start(const PoseGraph& graph);
+
+}  // namespace adit
