@@ -58,7 +58,7 @@ void print_graph(const SolvedGraph& g, Console& console) {
   console.result(std::to_string(g.graph.node.size()) + " nodes, " + std::to_string(g.graph.edge.size()) +
                  " edges, from the " + g.start + " start: chi2 " + std::to_string(g.chi2) + " after " +
                  std::to_string(g.iterations) + " iterations" + (g.converged ? "" : ", not converged"));
-  console.result("isotropic objective " + std::to_string(c.objective) + ": " + verdict(c));
+  console.result("isotropic objective " + std::to_string(c.objective) + ", " + verdict(c));
 }
 
 // The scenario that a run folder was made from; the defaults where the folder has none.

@@ -18,8 +18,8 @@ namespace adit {
 struct Aligned {
   std::vector<Pose2> X_MB;  // (scans) first = that of the front end
   std::vector<AlignmentRound> rounds;
-  bool converged = false;         // the correspondences repeated those of the round before
-  std::vector<Closure> closures;  // scan indices
+  bool converged = false;            // the correspondences repeated those of the round before
+  std::vector<Closure> closures;     // scan indices
   std::optional<SolvedGraph> graph;  // that X_MB is spread from
   std::vector<std::string> notes;
 };

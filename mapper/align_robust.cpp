@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
 #include "base/parallel.h"
-#include "mapper/graph_map.h"
 #include "mapper/align.h"
+#include "mapper/graph_map.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -344,7 +344,7 @@ Aligned align_robust(const Odometry& odometry, const MatchPlaces& match_places, 
     last = accepted(p);
   }
   result.closures = closures_of(p);
-  result.graph = solve_graph({graph_of(p), p.chain.scan, true}, "path");
+  if (p.node.size() > 1) result.graph = solve_graph({graph_of(p), p.chain.scan, true}, "path");
   if (!result.converged) result.notes.push_back("closures were still found in the last round allowed");
   progress("closing loops", settings.max_rounds, settings.max_rounds);
   return result;

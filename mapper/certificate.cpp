@@ -2,75 +2,21 @@
 #include "mapper/certificate.h"
 
 #include "mapper/graph.h"
-#include "mapper/graph_start.h"
+#include "mapper/isotropic.h"
 
 #include <Eigen/SparseCholesky>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <optional>
 
 namespace adit {
 namespace {
 
-using Complex = std::complex<double>;
-using Sparse = Eigen::SparseMatrix<Complex>;
+using Sparse = IsotropicForm::Sparse;
 using Vector = Eigen::VectorXcd;
-
-/// The same graph under the isotropic weights. Solved with chordal errors it is the isotropic objective: |R_j - R_i
-/// R_ij|_F^2 = 8 sin^2(e / 2) = 2 chord^2.
-PoseGraph isotropic(const PoseGraph& graph) {
-  PoseGraph result{graph.node, graph.edge, {}};
-  for (Relative& e : result.edge) {
-    const IsotropicWeight w = isotropic_weight(e);
-    e.information = Eigen::Vector3d(w.tau, w.tau, 2 * w.kappa).asDiagonal();
-  }
-  return result;
-}
-
-/// The objective as x^H Q x. Unknowns: positions of nodes 1.. (node 0 stands at the origin: only differences count),
-/// then the turns of all nodes. Lower triangle.
-struct Form {
-  int nodes = 0;
-  Sparse Q;
-
-  int position(int node) const { return node - 1; }  // -1: none
-  int turn(int node) const { return nodes - 1 + node; }
-  int size() const { return 2 * nodes - 1; }
-};
-
-Form form_of(const PoseGraph& graph) {
-  Form form;
-  form.nodes = static_cast<int>(graph.node.size());
-  std::vector<Eigen::Triplet<Complex>> entries;
-  const auto add = [&](std::initializer_list<std::pair<int, Complex>> row, double weight) {
-    for (const auto& [k, a] : row)
-      for (const auto& [l, b] : row)
-        if (k >= l && l >= 0) entries.emplace_back(k, l, weight * std::conj(a) * b);
-  };
-  for (const Relative& e : graph.edge) {
-    const IsotropicWeight w = isotropic_weight(e);
-    const Complex way(e.X_ij.x_m, e.X_ij.y_m), turn = std::polar(1.0, e.X_ij.yaw_rad);
-    add({{form.position(e.j), 1}, {form.position(e.i), -1}, {form.turn(e.i), -way}}, w.tau);
-    add({{form.turn(e.j), 1}, {form.turn(e.i), -turn}}, 2 * w.kappa);
-  }
-  for (int d = 0; d < form.size(); ++d) entries.emplace_back(d, d, 0);
-  form.Q = Sparse(form.size(), form.size());
-  form.Q.setFromTriplets(entries.begin(), entries.end());
-  return form;
-}
-
-Vector unknowns_of(const Form& form, const std::vector<Pose2>& node) {
-  Vector x(form.size());
-  for (int k = 0; k < form.nodes; ++k) {
-    const Pose2& X = node[k];
-    if (k > 0) x[form.position(k)] = Complex(X.x_m - node[0].x_m, X.y_m - node[0].y_m);
-    x[form.turn(k)] = std::polar(1.0, X.yaw_rad);
-  }
-  return x;
-}
 
 Vector times(const Sparse& lower, const Vector& x) {
   return lower.selfadjointView<Eigen::Lower>() * x;
@@ -79,18 +25,25 @@ Vector times(const Sparse& lower, const Vector& x) {
 /// S + shift on the turns, factored again and again with the same pattern.
 class Dual {
  public:
-  Dual(const Form& form, const Vector& x) : form_(form), S_(form.Q) {
-    const Vector y = times(form.Q, x);
-    for (int k = 0; k < form.nodes; ++k) {
-      const int at = form.turn(k);
-      S_.coeffRef(at, at) -= (std::conj(x[at]) * y[at]).real();
-    }
-    residual_ = times(S_, x).lpNorm<Eigen::Infinity>();
+  /// @param multiplier  (node) Lambda
+  Dual(const IsotropicForm& form, const Eigen::VectorXd& multiplier)
+      : form_(form), S_(form.Q), value_(multiplier.sum()) {
+    for (int k = 0; k < form.nodes; ++k) S_.coeffRef(form.turn(k), form.turn(k)) -= multiplier[k];
     factor_.analyzePattern(S_);
   }
 
   /// How far x is from being stationary.
-  double residual() const { return residual_; }
+  double residual(const Vector& x) const { return times(S_, x).lpNorm<Eigen::Infinity>(); }
+
+  /// The least shift, by factors of 4 from `first` up to `most`, that leaves no negative eigenvalue.
+  double least_shift(double first, double most) {
+    double shift = first;
+    while (!positive(shift) && shift < most) shift *= 4;
+    return shift;
+  }
+
+  /// No poses have a lower value, where positive(shift).
+  double bound(double shift) const { return value_ - form_.nodes * shift; }
 
   /// No eigenvalue lies below -shift: all pivots are positive.
   bool positive(double shift) {
@@ -121,9 +74,9 @@ class Dual {
   }
 
  private:
-  const Form& form_;
+  const IsotropicForm& form_;
   Sparse S_;
-  double residual_ = 0;
+  double value_;
   Eigen::SimplicialLDLT<Sparse> factor_;
 };
 
@@ -140,7 +93,7 @@ void measure_distance(const PoseGraph& graph, Certificate& c) {
 
 }  // namespace
 
-Certificate certify(const PoseGraph& graph) {
+Certificate certify(const PoseGraph& graph, const Eigen::VectorXd& multiplier) {
   Certificate c;
   c.node = graph.node;
   if (graph.node.size() < 2 || graph.edge.empty()) {
@@ -148,34 +101,39 @@ Certificate certify(const PoseGraph& graph) {
     return c;
   }
   const GraphSolution solution =
-      solve(isotropic(graph), {.max_iterations = 200, .tolerance_m = 1e-10, .chordal = true});
+      solve(isotropic_graph(graph), {.max_iterations = 200, .tolerance_m = 1e-10, .chordal = true});
   c.node = solution.node;
-  const Form form = form_of(graph);
-  const Vector given = unknowns_of(form, graph.node), x = unknowns_of(form, c.node);
+  const IsotropicForm form = isotropic_form(graph);
+  const Vector given = form.unknowns(graph.node), x = form.unknowns(c.node);
   c.given_objective = given.dot(times(form.Q, given)).real();
   c.objective = x.dot(times(form.Q, x)).real();
   measure_distance(graph, c);
 
-  Dual dual(form, x);
+  const Vector y = times(form.Q, x);
+  Eigen::VectorXd own(form.nodes);
+  for (int k = 0; k < form.nodes; ++k) own[k] = (std::conj(x[form.turn(k)]) * y[form.turn(k)]).real();
+  Dual dual(form, own);
   double largest = 0;
   for (int k = 0; k < form.size(); ++k) largest = std::max(largest, form.Q.coeff(k, k).real());
-  const double n = form.nodes;
   // What rounding leaves of a zero eigenvalue, or a ten-millionth of the value a node: whichever is more.
-  c.threshold = std::max(1e-14 * largest, 1e-7 * c.objective / n);
-  c.stationary = solution.converged && dual.residual() <= 1e-7 * largest;
-  const bool positive = dual.positive(c.threshold);
-  double shift = c.threshold;
-  while (!dual.positive(shift) && shift < 1e3 * largest) shift *= 4;
+  c.threshold = std::max(1e-14 * largest, 1e-7 * c.objective / form.nodes);
+  c.stationary = solution.converged && dual.residual(x) <= 1e-7 * largest;
+  const double shift = dual.least_shift(c.threshold, 1e3 * largest);
   c.smallest_eigenvalue = dual.least_eigenvalue();
-  c.certified = positive && c.stationary;
-  c.gap_bound = n * shift;
+  c.certified = shift == c.threshold && c.stationary;
+  c.gap_bound = c.objective - dual.bound(shift);
+  if (multiplier.size() > 0 && !c.certified) {
+    Dual lifted(form, multiplier);
+    c.gap_bound = std::min(c.gap_bound, c.objective - lifted.bound(lifted.least_shift(c.threshold, 1e3 * largest)));
+  }
   return c;
 }
 
 std::string verdict(const Certificate& c) {
-  if (c.certified) return "no poses have a lower value of the isotropic objective, up to gap_bound";
-  if (!c.stationary) return "not certified: the isotropic objective was not brought to a stationary point";
-  return "not certified: the dual matrix has a negative eigenvalue, so that poses with a lower value may exist";
+  if (c.certified) return "certified: no poses have a lower one";
+  if (!c.stationary) return "not certified: it was not brought to a stationary point";
+  return fmt::format("not certified: other poses may have a lower one, by {:.3g} % at most",
+                     100 * c.gap_bound / std::max(c.objective, std::numeric_limits<double>::min()));
 }
 
 }  // namespace adit

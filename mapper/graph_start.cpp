@@ -2,8 +2,8 @@
 #include "mapper/graph_start.h"
 
 #include "base/error.h"
+#include "mapper/isotropic.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 
 #include <cmath>
@@ -55,11 +55,6 @@ Vector solve_links(const std::vector<Link>& links, int nodes, Complex x_0) {
 }
 
 }  // namespace
-
-IsotropicWeight isotropic_weight(const Relative& edge) {
-  const Eigen::Matrix2d covariance = edge.information.topLeftCorner<2, 2>().inverse();
-  return {2 / covariance.trace(), edge.information(2, 2)};
-}
 
 std::vector<Pose2> odometric_start(const PoseGraph& graph) {
   std::vector<std::vector<size_t>> at(graph.node.size());  // edges of each node

@@ -7,14 +7,6 @@
 
 namespace adit {
 
-/// What the isotropic objective takes of an edge: tau |t_j - t_i - R_i t_ij|^2 + kappa |R_j - R_i R_ij|_F^2, with tau =
-/// 2 / trace of the covariance of the translation and kappa = the information of the yaw.
-/// Source: Rosen et al., "SE-Sync", IJRR 2019.
-struct IsotropicWeight {
-  double tau, kappa;
-};
-IsotropicWeight isotropic_weight(const Relative& edge);
-
 /// Poses from the edges alone, node 0 where it is: along a tree of edges that follows the numbering of the nodes as far
 /// as it goes. The graph must be in one part.
 std::vector<Pose2> odometric_start(const PoseGraph& graph);
