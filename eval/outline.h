@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/mesh.h"
+#include "base/polyline.h"
 
 #include <optional>
 #include <utility>
@@ -13,9 +14,6 @@ namespace adit {
 /// mesh has no labels, faces whose normal looks down are the floor. Corners nearer than tolerance_m to the line are
 /// left out.
 std::vector<std::vector<Vec2>> plan_outline(const Mesh& mesh, double tolerance_m = 0.03);
-
-/// A line with the points left out that are nearer than tolerance_m to what remains (Douglas and Peucker 1973).
-std::vector<Vec2> simplified(const std::vector<Vec2>& line, double tolerance_m);
 
 /// The part of a closed ring inside of a box (Sutherland and Hodgman 1974): where the ring leaves and comes back, the
 /// parts are joined along the box's border. Good for areas.
