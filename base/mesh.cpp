@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/mesh_writer.h"
 #include "base/ply.h"
 
 #include <algorithm>
@@ -12,89 +13,15 @@
 namespace adit {
 namespace {
 
-PlyColumn scalar(const std::string& name, PlyType type, size_t rows) {
-  PlyColumn c{name, type, false, {}, {}};
-  c.value.reserve(rows);
-  return c;
-}
-
-const PlyColumn& need(const std::string& file, const PlyElement& element, const std::string& column) {
-  const PlyColumn* c = element.find(column);
-  if (!c || c->list) throw Error(file + ": element '" + element.name + "' lacks the property '" + column + "'");
-  return *c;
-}
-
-std::vector<Vec3> read_vertices(const std::string& file, const Ply& ply) {
-  const PlyElement* e = ply.find("vertex");
-  if (!e) throw Error(file + ": has no element 'vertex'");
-  const PlyColumn &x = need(file, *e, "x"), &y = need(file, *e, "y"), &z = need(file, *e, "z");
-  std::vector<Vec3> vertex(e->rows);
-  for (size_t i = 0; i < e->rows; ++i) vertex[i] = Vec3(x.value[i], y.value[i], z.value[i]);
-  for (size_t i = 0; i < e->rows; ++i)
-    if (!vertex[i].allFinite()) throw Error(file + ": vertex " + std::to_string(i) + " is not finite");
-  return vertex;
-}
-
-PlyElement vertex_element(const Mesh& mesh) {
-  PlyElement e{"vertex", mesh.vertex.size(), {}};
-  for (int axis = 0; axis < 3; ++axis) {
-    PlyColumn c = scalar(std::string(1, "xyz"[axis]), PlyType::float64, mesh.vertex.size());
-    for (const Vec3& v : mesh.vertex) c.value.push_back(v[axis]);
-    e.columns.push_back(std::move(c));
+// Where an element's columns of some names stand among all, -1 for those that it lacks.
+std::vector<int> columns_of(const PlyElement& element, const std::vector<std::string>& names, bool lists) {
+  std::vector<int> at;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(element.columns.begin(), element.columns.end(),
+                                    [&](const PlyColumn& c) { return c.name == name && c.list == lists; });
+    at.push_back(found == element.columns.end() ? -1 : static_cast<int>(found - element.columns.begin()));
   }
-  return e;
-}
-
-template <class T>
-void add_column(PlyElement& e, const std::string& name, PlyType type, const std::vector<T>& values) {
-  if (values.empty()) return;
-  ADIT_CHECK(values.size() == e.rows);
-  PlyColumn c = scalar(name, type, e.rows);
-  for (const T& v : values) c.value.push_back(static_cast<double>(v));
-  e.columns.push_back(std::move(c));
-}
-
-PlyElement face_element(const Mesh& mesh) {
-  PlyElement e{"face", mesh.face.size(), {}};
-  PlyColumn indices{"vertex_indices", PlyType::int32, true, {}, {0}};
-  indices.value.reserve(3 * mesh.face.size());
-  indices.offset.reserve(mesh.face.size() + 1);
-  for (const auto& f : mesh.face) {
-    for (std::uint32_t v : f) indices.value.push_back(v);
-    indices.offset.push_back(static_cast<std::uint32_t>(indices.value.size()));
-  }
-  e.columns.push_back(std::move(indices));
-  add_column(e, "label", PlyType::int32, mesh.label);
-  add_column(e, "part", PlyType::int32, mesh.part);
-  add_column(e, "reflectivity", PlyType::float32, mesh.reflectivity);
-  add_column(e, "passage", PlyType::int32, mesh.passage);
-  add_column(e, "material", PlyType::uint8, mesh.material);
-  add_column(e, "wetness", PlyType::float32, mesh.wetness);
-  return e;
-}
-
-const PlyColumn* index_list(const PlyElement& faces) {
-  for (const char* name : {"vertex_indices", "vertex_index"})
-    if (const PlyColumn* c = faces.find(name); c && c->list) return c;
-  return nullptr;
-}
-
-// Fans a polygon into triangles; `row_of` gets the polygon of each triangle.
-void read_faces(const std::string& file, const PlyColumn& indices, Mesh& mesh, std::vector<size_t>& row_of) {
-  const auto index = [&](size_t i) {
-    const double v = indices.value[i];
-    if (!(v >= 0) || v >= static_cast<double>(mesh.vertex.size()))
-      throw Error(file + ": a face names vertex " + std::to_string(static_cast<long long>(v)) + ", there are " +
-                  std::to_string(mesh.vertex.size()));
-    return static_cast<std::uint32_t>(v);
-  };
-  for (size_t row = 0; row + 1 < indices.offset.size(); ++row) {
-    const size_t begin = indices.offset[row], end = indices.offset[row + 1];
-    for (size_t i = begin + 1; i + 1 < end; ++i) {
-      mesh.face.push_back({index(begin), index(i), index(i + 1)});
-      row_of.push_back(row);
-    }
-  }
+  return at;
 }
 
 Material material_of(const std::string& file, double value) {
@@ -201,35 +128,85 @@ Mesh read_obj(const std::string& file) {
   return mesh;
 }
 
+// Takes a mesh from the rows of a PLY file.
+class Rows {
+ public:
+  explicit Rows(std::string file) : file_(std::move(file)) {}
+
+  void begin(const PlyElement& e) {
+    if (e.name == "vertex") {
+      place_ = columns_of(e, {"x", "y", "z"}, false);
+      for (int axis = 0; axis < 3; ++axis)
+        if (place_[axis] < 0) throw Error(file_ + ": element 'vertex' lacks the property '" + "xyz"[axis] + "'");
+      mesh_.vertex.reserve(e.rows);
+    } else if (e.name == "face") {
+      const std::vector<int> lists = columns_of(e, {"vertex_indices", "vertex_index"}, true);
+      corners_ = std::max(lists[0], lists[1]);
+      if (place_.empty()) throw Error(file_ + ": has no element 'vertex'");
+      if (corners_ < 0) return;
+      told_ = columns_of(e, {"label", "part", "reflectivity", "passage", "material", "wetness"}, false);
+      mesh_.face.reserve(e.rows);
+    }
+  }
+
+  void row(const PlyElement& e, const std::vector<std::vector<double>>& row) {
+    if (e.name == "vertex") {
+      const Vec3 v(row[place_[0]][0], row[place_[1]][0], row[place_[2]][0]);
+      if (!v.allFinite()) throw Error(file_ + ": vertex " + std::to_string(mesh_.vertex.size()) + " is not finite");
+      mesh_.vertex.push_back(v);
+    } else if (e.name == "face" && corners_ >= 0) {
+      const std::vector<double>& corner = row[corners_];
+      for (size_t i = 1; i + 1 < corner.size(); ++i) {  // a polygon is fanned
+        mesh_.face.push_back({index(corner[0]), index(corner[i]), index(corner[i + 1])});
+        tell(row);
+      }
+    }
+  }
+
+  Mesh take() {
+    if (place_.empty()) throw Error(file_ + ": has no element 'vertex'");
+    if (corners_ < 0) throw Error(file_ + ": has no faces (a list 'vertex_indices'); a mesh is needed");
+    return std::move(mesh_);
+  }
+
+ private:
+  std::uint32_t index(double v) const {
+    if (!(v >= 0) || v >= static_cast<double>(mesh_.vertex.size()))
+      throw Error(file_ + ": a face names vertex " + std::to_string(static_cast<long long>(v)) + ", there are " +
+                  std::to_string(mesh_.vertex.size()));
+    return static_cast<std::uint32_t>(v);
+  }
+
+  void tell(const std::vector<std::vector<double>>& row) {
+    const auto told = [&](int k) { return row[told_[k]][0]; };
+    if (told_[0] >= 0) mesh_.label.push_back(label_of(file_, told(0)));
+    if (told_[1] >= 0) mesh_.part.push_back(static_cast<int>(told(1)));
+    if (told_[2] >= 0) mesh_.reflectivity.push_back(static_cast<float>(told(2)));
+    if (told_[3] >= 0) mesh_.passage.push_back(static_cast<int>(told(3)));
+    if (told_[4] >= 0) mesh_.material.push_back(material_of(file_, told(4)));
+    if (told_[5] >= 0) mesh_.wetness.push_back(static_cast<float>(told(5)));
+  }
+
+  std::string file_;
+  Mesh mesh_;
+  std::vector<int> place_, told_;  // columns of x y z; of what is told of a face
+  int corners_ = -1;
+};
+
 }  // namespace
 
 void write_mesh(const std::string& file, const Mesh& mesh) {
-  write_ply(file, {{vertex_element(mesh), face_element(mesh)}});
+  PlyWriter out(file);
+  out.add(mesh, all_vertices(mesh));
+  out.close();
 }
 
 Mesh read_mesh(const std::string& file) {
   if (file.ends_with(".obj")) return read_obj(file);
-  const Ply ply = read_ply(file);
-  Mesh mesh;
-  mesh.vertex = read_vertices(file, ply);
-  const PlyElement* faces = ply.find("face");
-  const PlyColumn* indices = faces ? index_list(*faces) : nullptr;
-  if (!indices) throw Error(file + ": has no faces (a list 'vertex_indices'); a mesh is needed");
-  std::vector<size_t> row_of;
-  read_faces(file, *indices, mesh, row_of);
-  if (const PlyColumn* c = faces->find("label"); c && !c->list)
-    for (size_t row : row_of) mesh.label.push_back(label_of(file, c->value[row]));
-  if (const PlyColumn* c = faces->find("part"); c && !c->list)
-    for (size_t row : row_of) mesh.part.push_back(static_cast<int>(c->value[row]));
-  if (const PlyColumn* c = faces->find("reflectivity"); c && !c->list)
-    for (size_t row : row_of) mesh.reflectivity.push_back(static_cast<float>(c->value[row]));
-  if (const PlyColumn* c = faces->find("passage"); c && !c->list)
-    for (size_t row : row_of) mesh.passage.push_back(static_cast<int>(c->value[row]));
-  if (const PlyColumn* c = faces->find("material"); c && !c->list)
-    for (size_t row : row_of) mesh.material.push_back(material_of(file, c->value[row]));
-  if (const PlyColumn* c = faces->find("wetness"); c && !c->list)
-    for (size_t row : row_of) mesh.wetness.push_back(static_cast<float>(c->value[row]));
-  return mesh;
+  Rows rows(file);
+  read_ply(file, {[&](const PlyElement& e) { rows.begin(e); },
+                  [&](const PlyElement& e, const std::vector<std::vector<double>>& row) { rows.row(e, row); }});
+  return rows.take();
 }
 
 }  // namespace adit

@@ -2,12 +2,14 @@
 // glTF 2.0 binary container: a JSON chunk and one buffer, written by hand (sections 3.6 and 4.4 of the specification).
 #include "base/error.h"
 #include "base/files.h"
-#include "base/mesh.h"
+#include "base/mesh_writer.h"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstring>
-#include <fstream>
+#include <limits>
 
 namespace adit {
 namespace {
@@ -15,8 +17,8 @@ namespace {
 using nlohmann::json;
 
 template <class T>
-void put(std::string& out, T v) {
-  out.append(reinterpret_cast<const char*>(&v), sizeof v);
+void put(std::ostream& out, T v) {
+  out.write(reinterpret_cast<const char*>(&v), sizeof v);
 }
 
 std::array<double, 3> colour_of(Label label) {
@@ -39,9 +41,10 @@ std::array<float, 3> y_up(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.z()), static_cast<float>(-v.y())};
 }
 
-class Builder {
+// The buffer's views, one after the other, and what describes them.
+class Contents {
  public:
-  explicit Builder(const Mesh& mesh) : mesh_(mesh) {
+  Contents() {
     json_["asset"] = {{"version", "2.0"}, {"generator", "adit"}};
     json_["scene"] = 0;
     json_["scenes"] = json::array({{{"nodes", {0}}}});
@@ -49,101 +52,118 @@ class Builder {
     json_["materials"] = json_["bufferViews"] = json_["accessors"] = json::array();
   }
 
-  std::string build() {
-    json primitives = json::array();
-    if (!mesh_.face.empty()) {
-      const size_t position = add_positions();
-      for (const auto& [name, id] : label_ids()) add_primitive(static_cast<Label>(id), name, position, primitives);
-    }
-    json_["meshes"] = json::array({{{"name", "mine"}, {"primitives", primitives}}});
-    if (mesh_.face.empty()) return pack_without_mesh();
-    json_["buffers"] = json::array({{{"byteLength", bytes_.size()}}});
-    return pack();
-  }
-
- private:
-  size_t view(size_t begin, int target) {
-    json_["bufferViews"].push_back(
-        {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes_.size() - begin}, {"target", target}});
-    return json_["bufferViews"].size() - 1;
-  }
-
-  size_t add_positions() {
-    std::array<float, 3> low = y_up(mesh_.vertex.front()), high = low;
-    const size_t begin = bytes_.size();
-    for (const Vec3& v : mesh_.vertex) {
-      const auto p = y_up(v);
-      for (int k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], p[k]);
-        high[k] = std::max(high[k], p[k]);
-        put(bytes_, p[k]);
-      }
-    }
-    json_["accessors"].push_back({{"bufferView", view(begin, 34962)},
+  void add_positions(std::uint64_t bytes, const std::array<float, 3>& low, const std::array<float, 3>& high) {
+    json_["accessors"].push_back({{"bufferView", view(bytes, 34962)},
                                   {"componentType", 5126},
-                                  {"count", mesh_.vertex.size()},
+                                  {"count", bytes / 12},
                                   {"type", "VEC3"},
                                   {"min", low},
                                   {"max", high}});
-    return json_["accessors"].size() - 1;
   }
 
-  void add_primitive(Label label, const std::string& name, size_t position, json& primitives) {
-    const size_t begin = bytes_.size();
-    for (size_t f = 0; f < mesh_.face.size(); ++f) {
-      if ((mesh_.label.empty() ? Label::none : mesh_.label[f]) != label) continue;
-      for (std::uint32_t v : mesh_.face[f]) put(bytes_, v);
-    }
-    if (bytes_.size() == begin) return;
-    const auto rgb = colour_of(label);
+  void add_primitive(const std::string& name, const std::array<double, 3>& rgb, std::uint64_t bytes) {
     json_["materials"].push_back(
         {{"name", name},
          {"doubleSided", true},
          {"pbrMetallicRoughness",
           {{"baseColorFactor", {rgb[0], rgb[1], rgb[2], 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}}});
-    json_["accessors"].push_back({{"bufferView", view(begin, 34963)},
-                                  {"componentType", 5125},
-                                  {"count", (bytes_.size() - begin) / 4},
-                                  {"type", "SCALAR"}});
-    primitives.push_back({{"attributes", {{"POSITION", position}}},
-                          {"indices", json_["accessors"].size() - 1},
-                          {"material", json_["materials"].size() - 1},
-                          {"mode", 4}});
+    json_["accessors"].push_back(
+        {{"bufferView", view(bytes, 34963)}, {"componentType", 5125}, {"count", bytes / 4}, {"type", "SCALAR"}});
+    primitives_.push_back({{"attributes", {{"POSITION", 0}}},
+                           {"indices", json_["accessors"].size() - 1},
+                           {"material", json_["materials"].size() - 1},
+                           {"mode", 4}});
   }
 
   // An empty list is not allowed in glTF: what there is none of is left out.
-  std::string pack_without_mesh() {
-    for (const char* key : {"meshes", "materials", "bufferViews", "accessors"}) json_.erase(key);
-    json_["nodes"] = json::array({{{"name", "mine"}}});
-    return pack();
-  }
-
-  std::string pack() const {
+  std::string text() {
+    if (bytes_ > 0) {
+      json_["meshes"] = json::array({{{"name", "mine"}, {"primitives", primitives_}}});
+      json_["buffers"] = json::array({{{"byteLength", bytes_}}});
+    } else {
+      for (const char* key : {"materials", "bufferViews", "accessors"}) json_.erase(key);
+      json_["nodes"] = json::array({{{"name", "mine"}}});
+    }
     std::string text = json_.dump();
     text.append((4 - text.size() % 4) % 4, ' ');
-    std::string out;
-    const size_t binary = bytes_.empty() ? 0 : 8 + bytes_.size();
-    put(out, std::uint32_t{0x46546C67});
-    put(out, std::uint32_t{2});
-    put(out, static_cast<std::uint32_t>(12 + 8 + text.size() + binary));
-    put(out, static_cast<std::uint32_t>(text.size()));
-    put(out, std::uint32_t{0x4E4F534A});
-    out += text;
-    if (bytes_.empty()) return out;
-    put(out, static_cast<std::uint32_t>(bytes_.size()));
-    put(out, std::uint32_t{0x004E4942});
-    return out + bytes_;
+    return text;
   }
 
-  const Mesh& mesh_;
-  json json_;
-  std::string bytes_;  // floats and indices: a multiple of 4 always
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  size_t view(std::uint64_t bytes, int target) {
+    json_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes_}, {"byteLength", bytes}, {"target", target}});
+    bytes_ += bytes;
+    return json_["bufferViews"].size() - 1;
+  }
+
+  json json_, primitives_ = json::array();
+  std::uint64_t bytes_ = 0;  // floats and indices: a multiple of 4 always
 };
 
 }  // namespace
 
+GlbWriter::GlbWriter(std::string file) : file_(std::move(file)), positions_(file_, "positions") {}
+
+void GlbWriter::add(const Mesh& m, const std::vector<std::uint32_t>& vertex_id) {
+  for (size_t v = 0; v < m.vertex.size(); ++v) {
+    if (vertex_id[v] != vertex_count_) continue;
+    const auto p = y_up(m.vertex[v]);
+    if (vertex_count_++ == 0) low_ = high_ = p;
+    for (int k = 0; k < 3; ++k) {
+      low_[k] = std::min(low_[k], p[k]);
+      high_[k] = std::max(high_[k], p[k]);
+      positions_.put(p[k]);
+    }
+  }
+  for (size_t f = 0; f < m.face.size(); ++f) {
+    const Label label = m.label.empty() ? Label::none : m.label[f];
+    auto& spool = indices_[label];
+    if (!spool) spool = std::make_unique<Spool>(file_, label_name(label));
+    for (std::uint32_t v : m.face[f]) spool->put(vertex_id[v]);
+  }
+}
+
+void GlbWriter::close() {
+  Contents contents;
+  std::vector<Spool*> buffer;
+  if (!indices_.empty()) {
+    contents.add_positions(positions_.bytes(), low_, high_);
+    buffer.push_back(&positions_);
+    for (const auto& [name, id] : label_ids()) {
+      const auto found = indices_.find(static_cast<Label>(id));
+      if (found == indices_.end()) continue;
+      contents.add_primitive(name, colour_of(found->first), found->second->bytes());
+      buffer.push_back(found->second.get());
+    }
+  }
+  const std::string text = contents.text();
+  const std::uint64_t total = 12 + 8 + text.size() + (contents.bytes() > 0 ? 8 + contents.bytes() : 0);
+  if (total > std::numeric_limits<std::uint32_t>::max())
+    throw Error(file_ + ": the mesh is too large for one glTF file, which holds 4 GiB; raise world.mesh_edge_m");
+  write_whole(file_, [&](const std::string& temporary) {
+    std::ofstream out(temporary, std::ios::binary);
+    put(out, std::uint32_t{0x46546C67});
+    put(out, std::uint32_t{2});
+    put(out, static_cast<std::uint32_t>(total));
+    put(out, static_cast<std::uint32_t>(text.size()));
+    put(out, std::uint32_t{0x4E4F534A});
+    out << text;
+    if (contents.bytes() > 0) {
+      put(out, static_cast<std::uint32_t>(contents.bytes()));
+      put(out, std::uint32_t{0x004E4942});
+    }
+    for (Spool* spool : buffer) spool->copy_to(out);
+    out.close();
+    if (!out) throw Error(file_ + ": cannot write: " + std::strerror(errno), Fault::file);
+  });
+}
+
 void write_glb(const std::string& file, const Mesh& mesh) {
-  write_text(file, Builder(mesh).build());
+  GlbWriter out(file);
+  out.add(mesh, all_vertices(mesh));
+  out.close();
 }
 
 }  // namespace adit

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -94,13 +96,30 @@ class Reader {
  public:
   enum Format { ascii, little, big };
 
-  explicit Reader(const std::string& file) : file_(file), text_(read_text(file)) {}
+  explicit Reader(const std::string& file) : file_(file) {
+    std::error_code failed;
+    if (std::filesystem::is_directory(file, failed)) throw Error(file + ": is a folder, a file is needed");
+    in_.open(file, std::ios::binary);
+    if (!in_) {
+      const bool absent = !std::filesystem::exists(file, failed);
+      throw Error(file + (absent ? ": no such file" : ": cannot read: " + std::string(std::strerror(errno))),
+                  absent ? Fault::bad_input : Fault::file);
+    }
+    const auto size = std::filesystem::file_size(file, failed);
+    behind_ = failed ? 0 : size;
+  }
 
   std::string line() {
-    if (at_ >= text_.size()) fail("ends within its header");
-    const size_t end = std::min(text_.find('\n', at_), text_.size());
-    std::string l = text_.substr(at_, end - at_);
-    at_ = end + 1;
+    std::string l;
+    for (;;) {
+      if (!has(1)) {
+        if (l.empty()) fail("ends within its header");
+        break;
+      }
+      const char c = text_[at_++];
+      if (c == '\n') break;
+      l += c;
+    }
     if (!l.empty() && l.back() == '\r') l.pop_back();
     return l;
   }
@@ -111,29 +130,45 @@ class Reader {
     if (format_ == ascii) return next_word();
     char bytes[8];
     const size_t n = info(type).bytes;
-    if (at_ + n > text_.size()) fail("is cut short: its header promises more than there is");
+    if (!has(n)) fail("is cut short: its header promises more than there is");
     std::memcpy(bytes, text_.data() + at_, n);
     at_ += n;
     if (format_ == big) std::reverse(bytes, bytes + n);
     return decode(type, bytes);
   }
 
-  size_t bytes_left() const { return at_ < text_.size() ? text_.size() - at_ : 0; }
+  size_t bytes_left() const { return text_.size() - at_ + behind_; }
   [[noreturn]] void fail(const std::string& what) const { throw Error(file_ + ": this PLY file " + what); }
 
  private:
+  // Whether n more bytes are in the block, which is filled again where they are not.
+  bool has(size_t n) {
+    if (at_ + n <= text_.size()) return true;
+    text_.erase(0, at_);
+    at_ = 0;
+    const size_t held = text_.size(), more = std::min<size_t>(behind_, 1 << 20);
+    text_.resize(held + more);
+    in_.read(text_.data() + held, static_cast<std::streamsize>(more));
+    text_.resize(held + static_cast<size_t>(in_.gcount()));
+    behind_ = static_cast<size_t>(in_.gcount()) == more ? behind_ - more : 0;
+    return n <= text_.size();
+  }
+
   double next_word() {
-    while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
-    if (at_ >= text_.size()) fail("is cut short: its header promises more than there is");
+    while (has(1) && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
+    if (!has(1)) fail("is cut short: its header promises more than there is");
+    has(longest_word);  // the whole word is in the block, if there is as much
     double v = 0;
     const auto [end, failed] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), v);
-    if (failed != std::errc()) fail("has no number at byte " + std::to_string(at_));
+    if (failed != std::errc()) fail("has no number where one is due: '" + text_.substr(at_, 12) + "'");
     at_ = static_cast<size_t>(end - text_.data());
     return v;
   }
 
+  static constexpr size_t longest_word = 400;
   std::string file_, text_;
-  size_t at_ = 0;
+  std::ifstream in_;
+  size_t at_ = 0, behind_ = 0;  // in the block; bytes of the file behind it
   Format format_ = ascii;
 };
 
@@ -187,22 +222,21 @@ Ply read_header(Reader& in, std::vector<std::vector<PlyType>>& counts) {
   return ply;
 }
 
-void read_rows(Reader& in, PlyElement& element, const std::vector<PlyType>& counts) {
+void read_rows(Reader& in, const PlyElement& element, const std::vector<PlyType>& counts, const PlySink& sink) {
   // Every row takes a byte at least: a header that lies cannot make us reserve the machine.
   if (element.rows > in.bytes_left() && !element.columns.empty())
     in.fail("is cut short: " + std::to_string(element.rows) + " rows of '" + element.name + "' are promised");
-  for (PlyColumn& c : element.columns) {
-    c.value.reserve(c.list ? 3 * element.rows : element.rows);
-    if (c.list) c.offset.assign(1, 0);
-  }
+  sink.element(element);
+  std::vector<std::vector<double>> values(element.columns.size());
   for (size_t row = 0; row < element.rows && !element.columns.empty(); ++row) {
     for (size_t k = 0; k < element.columns.size(); ++k) {
-      PlyColumn& c = element.columns[k];
+      const PlyColumn& c = element.columns[k];
       const double items = c.list ? in.next(counts[k]) : 1;
       if (items < 0) in.fail("has a list of negative length");
-      for (double i = 0; i < items; ++i) c.value.push_back(in.next(c.type));
-      if (c.list) c.offset.push_back(static_cast<std::uint32_t>(c.value.size()));
+      values[k].clear();
+      for (double i = 0; i < items; ++i) values[k].push_back(in.next(c.type));
     }
+    sink.row(element, values);
   }
 }
 
@@ -232,11 +266,31 @@ const PlyElement* Ply::find(const std::string& element) const {
   return nullptr;
 }
 
-Ply read_ply(const std::string& file) {
+void read_ply(const std::string& file, const PlySink& sink) {
   Reader in(file);
   std::vector<std::vector<PlyType>> counts;
-  Ply ply = read_header(in, counts);
-  for (size_t e = 0; e < ply.elements.size(); ++e) read_rows(in, ply.elements[e], counts[e]);
+  const Ply header = read_header(in, counts);
+  for (size_t e = 0; e < header.elements.size(); ++e) read_rows(in, header.elements[e], counts[e], sink);
+}
+
+Ply read_ply(const std::string& file) {
+  Ply ply;
+  PlySink sink;
+  sink.element = [&](const PlyElement& element) {
+    ply.elements.push_back(element);
+    for (PlyColumn& c : ply.elements.back().columns) {
+      c.value.reserve(c.list ? 3 * element.rows : element.rows);
+      if (c.list) c.offset.assign(1, 0);
+    }
+  };
+  sink.row = [&](const PlyElement&, const std::vector<std::vector<double>>& row) {
+    std::vector<PlyColumn>& columns = ply.elements.back().columns;
+    for (size_t k = 0; k < columns.size(); ++k) {
+      columns[k].value.insert(columns[k].value.end(), row[k].begin(), row[k].end());
+      if (columns[k].list) columns[k].offset.push_back(static_cast<std::uint32_t>(columns[k].value.size()));
+    }
+  };
+  read_ply(file, sink);
   return ply;
 }
 

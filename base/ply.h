@@ -4,6 +4,7 @@
 // PLY files as tables: elements (vertex, face) of columns. Meshes and point clouds stand on it.
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,14 @@ struct Ply {
 
   const PlyElement* find(const std::string& element) const;
 };
+
+/// What a file holds, row by row, for what is too large to be held twice.
+struct PlySink {
+  std::function<void(const PlyElement&)> element;  // its rows come next; columns have names and types
+  /// One row: (columns) the value, or the items of a list.
+  std::function<void(const PlyElement&, const std::vector<std::vector<double>>& row)> row;
+};
+void read_ply(const std::string& file, const PlySink& sink);
 
 /// Reads ascii, little-endian and big-endian files. Truncated or foreign files: Error with file and place.
 Ply read_ply(const std::string& file);

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/world_writer.h"
 
 #include <nlohmann/json.hpp>
 
@@ -40,121 +41,11 @@ class Digest {
   std::uint64_t state_ = 0x61646974;
 };
 
-json array_of(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-json array_of(const Vec2& v) {
-  return {v.x(), v.y()};
-}
-template <class V>
-json array_of(const std::vector<V>& vectors) {
-  json a = json::array();
-  for (const V& v : vectors) a.push_back(array_of(v));
-  return a;
-}
-
 Vec3 vec3_of(const json& j) {
   return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
 }
 Vec2 vec2_of(const json& j) {
   return {j.at(0).get<double>(), j.at(1).get<double>()};
-}
-
-std::vector<json> junctions_of(const World& world) {
-  std::vector<json> all;
-  for (size_t i = 0; i < world.junctions.size(); ++i)
-    all.push_back({{"id", i}, {"p_W", array_of(world.junctions[i].p_W)}, {"passages", world.junctions[i].passages}});
-  return all;
-}
-
-std::vector<json> passages_of(const World& world) {
-  std::vector<json> all;
-  for (size_t i = 0; i < world.passages.size(); ++i) {
-    const Passage& p = world.passages[i];
-    all.push_back({{"id", i},
-                   {"a", p.a},
-                   {"b", p.b},
-                   {"width_m", p.width_m},
-                   {"height_m", p.height_m},
-                   {"length_m", p.length_m},
-                   {"volume_m3", p.volume_m3},
-                   {"centre_line", array_of(p.centre_line)}});
-  }
-  return all;
-}
-
-std::vector<json> pillars_of(const World& world) {
-  std::vector<json> all;
-  for (size_t i = 0; i < world.pillars.size(); ++i)
-    all.push_back({{"id", i}, {"area_m2", world.pillars[i].area_m2}, {"outline", array_of(world.pillars[i].outline)}});
-  return all;
-}
-
-// Area of the faces of each material, with their mean reflectivity and wetness.
-json rocks_of(const Mesh& mesh) {
-  std::map<Material, std::array<double, 3>> sums;
-  for (size_t f = 0; f < mesh.material.size(); ++f) {
-    auto& [area, reflected, wet] = sums[mesh.material[f]];
-    const double a = mesh.area(f);
-    area += a;
-    if (!mesh.reflectivity.empty()) reflected += a * mesh.reflectivity[f];
-    if (!mesh.wetness.empty()) wet += a * mesh.wetness[f];
-  }
-  json all = json::object();
-  for (const auto& [name, id] : material_ids()) {
-    const auto found = sums.find(static_cast<Material>(id));
-    if (found == sums.end() || !(found->second[0] > 0)) continue;
-    const auto& [area, reflected, wet] = found->second;
-    all[name] = {{"id", id}, {"area_m2", area}, {"reflectivity_905nm", reflected / area}, {"wetness", wet / area}};
-  }
-  return all;
-}
-
-// Area and mean reflectivity of the faces of each label.
-json materials_of(const Mesh& mesh) {
-  std::map<Label, std::pair<double, double>> sums;
-  for (size_t f = 0; f < mesh.label.size(); ++f) {
-    auto& [area, reflected] = sums[mesh.label[f]];
-    area += mesh.area(f);
-    if (!mesh.reflectivity.empty()) reflected += mesh.area(f) * mesh.reflectivity[f];
-  }
-  json all = json::object();
-  for (const auto& [label, sum] : sums) {
-    json& m = all[label_name(label)];
-    m["area_m2"] = sum.first;
-    if (!mesh.reflectivity.empty() && sum.first > 0) m["reflectivity_905nm"] = sum.second / sum.first;
-  }
-  return all;
-}
-
-// A list with one entry a line: readable, and small beside a full indentation.
-std::string lines(const std::vector<json>& entries) {
-  std::string text = "[";
-  for (size_t i = 0; i < entries.size(); ++i) text += (i ? ",\n    " : "\n    ") + entries[i].dump();
-  return text + (entries.empty() ? "]" : "\n  ]");
-}
-
-std::string truth_text(const World& world) {
-  const WorldNumbers& n = world.numbers;
-  const std::vector<std::pair<std::string, std::string>> items = {
-      {"name", json(world.name).dump()},
-      {"volume_m3", json(n.volume_m3).dump()},
-      {"floor_area_m2", json(n.floor_area_m2).dump()},
-      {"extraction_ratio", json(n.extraction_ratio).dump()},
-      {"loops", json(n.loops).dump()},
-      {"labels", json(label_ids()).dump()},
-      {"materials", materials_of(world.mesh).dump()},
-      {"rocks", rocks_of(world.mesh).dump()},
-      {"cycles", json(cycle_basis(world)).dump()},
-      {"outline", array_of(world.outline).dump()},
-      {"junctions", lines(junctions_of(world))},
-      {"passages", lines(passages_of(world))},
-      {"pillars", lines(pillars_of(world))},
-  };
-  std::string text = "{";
-  for (size_t i = 0; i < items.size(); ++i)
-    text += (i ? ",\n  \"" : "\n  \"") + items[i].first + "\": " + items[i].second;
-  return text + "\n}\n";
 }
 
 Passage passage_of(const json& j) {
@@ -278,9 +169,9 @@ std::string world_hash(const World& world) {
 }
 
 void save_world(const std::string& dir, const World& world) {
-  write_mesh(dir + "/mine.ply", world.mesh);
-  write_glb(dir + "/mine.glb", world.mesh);
-  write_text(dir + "/truth.json", truth_text(world));
+  WorldWriter out(dir);
+  out.add(world.mesh, all_vertices(world.mesh));
+  out.close(world);
 }
 
 World load_world(const std::string& dir) {

@@ -121,8 +121,10 @@ int world_command(const std::string& scenario, const Common& common, Console& co
     throw Error("world: name a scenario, or a mesh with --check; 'adit list scenarios' shows what is bundled");
   const Scenario s = scenario_of(scenario, common);
   Stages stages(out_of(common, s.name), console);
-  const World world = stages.world(s);
-  stages.pictures(world);
+  if (s.world.tile_m > 0)
+    stages.world_in_parts(s);
+  else
+    stages.pictures(stages.world(s));
   stages.save_timing();
   console.result("mine: " + stages.out() + "/world");
   if (console.wants_json())

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/convert.h"
 #include "cli/rig_command.h"
+#include "cli/stats_command.h"
 
 #include <CLI/CLI.hpp>
 
@@ -20,7 +21,7 @@ struct Words {
   adit::Common common;
   bool quiet = false, json = false;
   int threads = 0, every = 1;
-  std::string first, second, world, truth, check;
+  std::string first, second, world, truth, check, stats;
   adit::ScoreInput score;
   std::vector<std::string> outs;
 };
@@ -39,6 +40,7 @@ int dispatch(CLI::App& app, const Words& w) {
   Console console(w.quiet, w.json);
   set_threads(w.threads);
   if (app.got_subcommand("run")) return run_command(w.first, w.common, console);
+  if (app.got_subcommand("world") && !w.stats.empty()) return stats_command(w.stats, console);
   if (app.got_subcommand("world"))
     return w.check.empty() ? world_command(w.first, w.common, console) : check_command(w.check, console);
   if (app.got_subcommand("drive")) return drive_command(w.first, w.world, w.common, console);
@@ -79,6 +81,9 @@ void add_commands(CLI::App& app, Words& w) {
       "--check", w.check,
       "verify a mesh (PLY, OBJ): closed, oriented, labelled, not self-crossing; or a world's folder, its truth too");
   check->excludes(scenario);
+  world->add_option("--stats", w.stats, "what all mines under this folder measure: widths, heights, grades, junctions")
+      ->excludes(scenario)
+      ->excludes(check);
   add_common(world, w, true);
   CLI::App* drive = app.add_subcommand("drive", "a recording, in a mine that is made or given");
   drive->add_option("scenario", w.first, "bundled name or TOML file")->required();

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/world_writer.h"
 #include "eval/mine_views.h"
 #include "eval/trouble.h"
 
@@ -58,17 +59,27 @@ void Stages::forget(const std::vector<std::string>& later) const {
   }
 }
 
+namespace {
+
+void demand_sound(std::int64_t seed, const WorldCheck& check, const std::vector<std::string>& faults) {
+  if (!check.ok()) throw Error("the mine of seed " + std::to_string(seed) + " is broken: " + check.what(), Fault::bug);
+  if (!faults.empty())
+    throw Error("the truth of seed " + std::to_string(seed) + " does not fit its mesh: " + faults.front(), Fault::bug);
+}
+
+std::string summary(const World& world, size_t triangles) {
+  return "  " + std::to_string(triangles) + " triangles, " + std::to_string(world.pillars.size()) + " pillars, " +
+         std::to_string(world.numbers.loops) + " loops, void of " + with_unit(world.numbers.volume_m3, "m3", 1);
+}
+
+}  // namespace
+
 World Stages::world(const Scenario& s) {
   World world;
   timed("world", [&] {
     world = make_world(s.world, static_cast<std::uint64_t>(s.seed), console_.progress());
     world.name = s.name;
-    const WorldCheck check = check_world(world);
-    if (!check.ok())
-      throw Error("the mine of seed " + std::to_string(s.seed) + " is broken: " + check.what(), Fault::bug);
-    if (const auto faults = check_truth(world); !faults.empty())
-      throw Error("the truth of seed " + std::to_string(s.seed) + " does not fit its mesh: " + faults.front(),
-                  Fault::bug);
+    demand_sound(s.seed, check_world(world), check_truth(world));
     plan_route(world, s.route,
                static_cast<std::uint64_t>(s.seed));  // a route that cannot be is said before files change
     write_text(out_ + "/scenario.toml", resolved_toml(s));
@@ -76,10 +87,34 @@ World Stages::world(const Scenario& s) {
     save_plan(out_ + "/world", world);
     forget({"recording", "map", "score.json", "report"});
   });
-  console_.note("  " + std::to_string(world.mesh.face.size()) + " triangles, " + std::to_string(world.pillars.size()) +
-                " pillars, " + std::to_string(world.numbers.loops) + " loops, void of " +
-                with_unit(world.numbers.volume_m3, "m3", 1));
+  console_.note(summary(world, world.mesh.face.size()));
   return world;
+}
+
+void Stages::world_in_parts(const Scenario& s) {
+  World world;
+  Mesh largest;  // of the parts: the one that is looked into
+  size_t triangles = 0;
+  timed("world", [&] {
+    WorldWriter writer(out_ + "/world");
+    PartsCheck check;
+    const auto take = [&](MinePart&& part) {
+      check.add(part);
+      writer.add(part.mesh, part.vertex_id);
+      triangles += part.mesh.face.size();
+      if (part.mesh.face.size() > largest.face.size()) largest = std::move(part.mesh);
+    };
+    world = make_parts(s.world, static_cast<std::uint64_t>(s.seed), take, console_.progress());
+    world.name = s.name;
+    demand_sound(s.seed, check.finish(), check_truth(world, check.tally()));
+    write_text(out_ + "/scenario.toml", resolved_toml(s));
+    writer.close(world);
+    forget({"recording", "map", "score.json", "report"});
+  });
+  timed("plan", [&] { save_plan(out_ + "/world", world); });
+  console_.note(summary(world, triangles));
+  world.mesh = std::move(largest);
+  pictures(world);
 }
 
 void Stages::pictures(const World& world) {

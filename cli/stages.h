@@ -21,6 +21,8 @@ class Stages {
   Stages(std::string out, Console& console);
 
   World world(const Scenario& s);
+  /// The same tile after tile, pictures too, where the mine is made in tiles: it is never held as a whole.
+  void world_in_parts(const Scenario& s);
   /// OUT/world/plan.png, interior-1.png, interior-2.png
   void pictures(const World& world);
   struct Driven {

@@ -53,6 +53,8 @@ std::vector<Place> places_of(const World& world) {
         const Vec3 eye = line[from] + Vec3(0, 0, 0.68 * p.height_m);
         const Vec3 ahead = (line[to] - line[from]).normalized();
         const double sight = caster.nearest(Ray{eye, ahead, 200}).range_m;
+        // Of a mesh that is a part of the mine: not from beyond it, nor out of it.
+        if (!std::isfinite(sight) || !std::isfinite(caster.nearest(Ray{eye, {0, 0, -1}, 10}).range_m)) continue;
         places.push_back({eye, ahead, std::min(best_sight_m, sight)});
       }
     }
@@ -78,8 +80,16 @@ Picture look(const World& world, const std::vector<float>& bright, const Place& 
   return take_picture(scene, camera, width, height);
 }
 
+// As the truth tells it, else from the mesh.
+std::vector<std::vector<Vec2>> outline_of(const World& world) {
+  if (world.outline.empty()) return plan_outline(world.mesh);
+  std::vector<std::vector<Vec2>> outline{world.outline};
+  for (const Pillar& p : world.pillars) outline.emplace_back(p.outline.rbegin(), p.outline.rend());
+  return outline;
+}
+
 Picture plan_picture(const World& world, int width_px) {
-  const std::vector<std::vector<Vec2>> outline = plan_outline(world.mesh);
+  const std::vector<std::vector<Vec2>> outline = outline_of(world);
   Vec2 low(1e300, 1e300), high(-1e300, -1e300);
   for (const auto& ring : outline) {
     for (const Vec2& p : ring) {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 namespace adit {
 namespace {
@@ -12,7 +14,8 @@ namespace {
 constexpr double step_m = 0.5;
 constexpr double face_corner_m = 0.7;  // radius of the corners of a dead end
 constexpr double face_reach_m = 3;     // of a dead end's plane along its passage
-constexpr double face_beyond_m = 1;    // a dead end's node lies this far from its face
+constexpr double past_wall_m = 0.5;    // by which two drifts run past the wall that will part them
+constexpr double wall_foot_m = 0.8;    // by which a wall's ends reach into the rock
 
 std::vector<Vec2> resampled(const std::vector<Vec2>& line) {
   std::vector<Vec2> dense{line.front()};
@@ -107,14 +110,51 @@ std::vector<Drift> drive_passages(const MinePlan& plan, const WorldSettings& s, 
     draw_walls(d, width[i], at_node[p.a], at_node[p.b], walls);
     drifts.push_back(std::move(d));
   }
+  for (const PlanWall& w : plan.walls) {
+    for (size_t i = 0; i < drifts.size(); ++i) {
+      for (int node : {w.a, w.b}) {
+        if (plan.passages[i].a == node) drifts[i].face_a_m += w.thick_m + past_wall_m;
+        if (plan.passages[i].b == node) drifts[i].face_b_m += w.thick_m + past_wall_m;
+      }
+    }
+  }
   return drifts;
+}
+
+double Wall::distance(const Vec2& p) const {
+  const Vec2 w = p - middle;
+  const bool beside = std::abs(along.x() * w.y() - along.y() * w.x()) > 0.5 * wide_m;
+  return beside ? std::numeric_limits<double>::infinity() : std::abs(w.dot(along)) - 0.5 * thick_m;
+}
+
+std::vector<Wall> walls_of(const MinePlan& plan, const std::vector<Drift>& drifts) {
+  struct End {  // where a node came to lie, how wide the passage is there
+    Vec2 p = Vec2::Zero();
+    double width_m = 0;
+  };
+  std::map<int, End> end;
+  for (const PlanWall& w : plan.walls) end[w.a] = end[w.b] = {};
+  for (size_t i = 0; i < drifts.size(); ++i) {
+    const Drift& d = drifts[i];
+    if (const auto a = end.find(plan.passages[i].a); a != end.end())
+      a->second = {d.line.front(), d.left.front() + d.right.front()};
+    if (const auto b = end.find(plan.passages[i].b); b != end.end())
+      b->second = {d.line.back(), d.left.back() + d.right.back()};
+  }
+  std::vector<Wall> walls;
+  for (const PlanWall& w : plan.walls) {
+    const auto& [a, width_a] = end[w.a];
+    const auto& [b, width_b] = end[w.b];
+    walls.push_back({0.5 * (a + b), (b - a).normalized(), w.thick_m, std::max(width_a, width_b) + 2 * wall_foot_m});
+  }
+  return walls;
 }
 
 double beyond_end(const Drift& d, bool at_b, const Vec2& p) {
   const size_t n = d.line.size();
   const Vec2 end = at_b ? d.line[n - 1] : d.line[0];
   const Vec2 before = at_b ? d.line[n - 1 - std::min<size_t>(n - 1, 4)] : d.line[std::min<size_t>(n - 1, 4)];
-  return (p - end).dot((end - before).normalized()) - face_beyond_m;
+  return (p - end).dot((end - before).normalized()) - (at_b ? d.face_b_m : d.face_a_m);
 }
 
 double signed_distance(const Drift& d, size_t k, const Vec2& p) {
@@ -126,7 +166,7 @@ double signed_distance(const Drift& d, size_t k, const Vec2& p) {
   // Beyond a dead end's node the ribs run on to the face.
   const bool runs_on = (d.flat_a && k == 0 && along < 0) || (d.flat_b && k == last && along > 1);
   double distance = (runs_on ? std::abs(across) : (w - t * u).norm()) - (half[k] + t * (half[k + 1] - half[k]));
-  const size_t reach = static_cast<size_t>(face_reach_m / step_m);
+  const auto reach = static_cast<size_t>(face_reach_m / step_m);
   if (d.flat_a && k < reach) distance = rounded_max(distance, beyond_end(d, false, p), face_corner_m);
   if (d.flat_b && k + reach > last) distance = rounded_max(distance, beyond_end(d, true, p), face_corner_m);
   return distance;

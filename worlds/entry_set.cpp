@@ -9,7 +9,6 @@
 namespace adit {
 namespace {
 
-constexpr double stopping_m = 3.6;    // of rock and block that closes a crosscut: what rounded corners leave standing
 constexpr double face_beyond_m = 1;   // a dead end's face lies this far beyond its node
 constexpr double turnout_widths = 3;  // how far from a junction its turnout leaves, in widths of the passage
 enum Address : std::uint64_t { crosscut_fate = 20, crosscut_share, crosscut_side, turnout_drawn, turnout_pair };
@@ -65,7 +64,8 @@ EntrySet entry_set(const Vec2& origin, const Vec2& along, double width_m, std::v
 }
 
 EntrySet branch(MinePlan& plan, EntrySet& parent, int side, double s_m, double width_m, std::vector<double> offset_m) {
-  const size_t outer = side > 0 ? parent.offset_m.size() - 1 : 0;
+  const auto [right, left] = std::minmax_element(parent.offset_m.begin(), parent.offset_m.end());
+  const auto outer = static_cast<size_t>((side > 0 ? left : right) - parent.offset_m.begin());
   const Vec2 along = side * Vec2(-parent.along.y(), parent.along.x());
   // The child's left is against its parent's way where it leaves to the left.
   if (side > 0)
@@ -105,7 +105,8 @@ void drive_crosscut(MinePlan& plan, int a, int b, double width_m, const Crosscut
   const double drawn = uniform(seed, Draw::world_layout, crosscut_fate, which);
   if (drawn < shares.missing) return;
   const Vec2 from = plan.nodes[a], way = (plan.nodes[b] - from).normalized();
-  const double length = (plan.nodes[b] - from).norm(), free = length - 2 * width_m - stopping_m - 2 * face_beyond_m;
+  const double length = (plan.nodes[b] - from).norm(), closed_m = shares.stopping_m + 2 * face_beyond_m;
+  const double free = length - 2 * width_m - closed_m;
   const bool dead = drawn < shares.missing + shares.dead_end;
   const bool closed = drawn < shares.missing + shares.dead_end + shares.stopping;
   if (!closed || free <= 0) return join(plan, a, b, width_m);
@@ -115,9 +116,9 @@ void drive_crosscut(MinePlan& plan, int a, int b, double width_m, const Crosscut
   const int end = add_node(plan, from_b ? Vec2(plan.nodes[b] - first * way) : Vec2(from + first * way));
   join(plan, from_b ? b : a, end, width_m);
   if (dead) return;
-  const int other = add_node(plan, plan.nodes[end] + (stopping_m + 2 * face_beyond_m) * way);
+  const int other = add_node(plan, plan.nodes[end] + closed_m * way);
   join(plan, other, b, width_m);
-  plan.cut[end] = plan.cut[other] = 1;
+  plan.walls.push_back({end, other, shares.stopping_m});
 }
 
 void add_turnouts(MinePlan& plan, double share, std::uint64_t seed) {

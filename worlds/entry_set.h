@@ -39,9 +39,10 @@ void drive_entries(MinePlan& plan, EntrySet& set);
 std::vector<double> scattered(int n, double spacing_m, double sd_m, std::uint64_t seed, std::uint64_t which);
 
 /// A crosscut between two nodes as chance has it: driven through, driven from one side only, closed by a stopping, or
-/// left out. A closed one ends in two faces marked as cut.
+/// left out. A closed one is cut in two by a wall.
 struct CrosscutShares {
   double missing = 0, dead_end = 0, stopping = 0;
+  double stopping_m = 0.4;  // thickness of the wall
 };
 void drive_crosscut(MinePlan& plan, int a, int b, double width_m, const CrosscutShares& shares, std::uint64_t seed,
                     std::uint64_t which);

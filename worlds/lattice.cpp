@@ -11,14 +11,15 @@
 namespace adit {
 namespace {
 
-// Edges of the lattice have numbers: 2 * node for the one to the right of it, 2 * node + 1 for the one above it.
-struct Link {
-  std::uint64_t from, to;
-  bool operator<(const Link& other) const { return from < other.from; }
-};
-
 // Corner k of a cell is corner_of[k], side k runs from corner k to k + 1, counter-clockwise from the lower left.
 constexpr std::array<std::array<int, 2>, 4> corner_of{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+
+// Where the level is crossed between a node and the one to the right of it or above it.
+Vec2 crossing(const Lattice& f, double level, int i, int j, bool up) {
+  const double a = f.value[f.index(i, j)], b = f.value[up ? f.index(i, j + 1) : f.index(i + 1, j)];
+  const double s = std::clamp((level - a) / (b - a), 0.0, 1.0);
+  return f.node(i, j) + f.cell_m * (up ? Vec2(0, s) : Vec2(s, 0));
+}
 
 void link_cell(const Lattice& f, double level, int i, int j, std::vector<Link>& links) {
   std::array<bool, 4> below;
@@ -28,8 +29,13 @@ void link_cell(const Lattice& f, double level, int i, int j, std::vector<Link>& 
     count += below[k];
   }
   if (count == 0 || count == 4) return;
-  const std::uint64_t here = f.index(i, j);
-  const std::array<std::uint64_t, 4> side{2 * here, 2 * f.index(i + 1, j) + 1, 2 * f.index(i, j + 1), 2 * here + 1};
+  // Sides of the lattice have numbers: 2 * node for the one to the right of it, 2 * node + 1 for the one above it.
+  const auto number = [&](int x, int y, bool up) {
+    return 2 * (static_cast<std::uint64_t>(f.j0 + y) << 31 | static_cast<std::uint64_t>(f.i0 + x)) + up;
+  };
+  const std::array<std::uint64_t, 4> side{number(i, j, false), number(i + 1, j, true), number(i, j + 1, false),
+                                          number(i, j, true)};
+  const auto place = [&](int k) { return crossing(f, level, i + (k == 1), j + (k == 2), k % 2 == 1); };
   // Going round counter-clockwise, a line with the part below on its left enters where we go from above to below ...
   // and leaves where we go from below to above; in a saddle the two corners below are joined.
   std::vector<int> enters, leaves;
@@ -48,35 +54,29 @@ void link_cell(const Lattice& f, double level, int i, int j, std::vector<Link>& 
         break;
       }
     }
-    links.push_back({side[in], side[out]});
+    links.push_back({side[in], side[out], place(in), place(out)});
   }
-}
-
-Vec2 crossing(const Lattice& f, double level, std::uint64_t edge) {
-  const std::uint64_t node = edge / 2;
-  const int i = static_cast<int>(node % f.width), j = static_cast<int>(node / f.width);
-  const bool up = edge % 2;
-  const double a = f.value[node], b = f.value[up ? f.index(i, j + 1) : f.index(i + 1, j)];
-  const double s = std::clamp((level - a) / (b - a), 0.0, 1.0);
-  return f.node(i, j) + f.cell_m * (up ? Vec2(0, s) : Vec2(s, 0));
 }
 
 }  // namespace
 
 double Lattice::at(const Vec2& p) const {
-  const double x = std::clamp((p.x() - origin.x()) / cell_m, 0.0, width - 1.001);
-  const double y = std::clamp((p.y() - origin.y()) / cell_m, 0.0, height - 1.001);
+  const double x = std::clamp((p.x() - origin.x()) / cell_m - i0, 0.0, width - 1.001);
+  const double y = std::clamp((p.y() - origin.y()) / cell_m - j0, 0.0, height - 1.001);
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const double u = x - i, v = y - j;
   return (1 - v) * ((1 - u) * value[index(i, j)] + u * value[index(i + 1, j)]) +
          v * ((1 - u) * value[index(i, j + 1)] + u * value[index(i + 1, j + 1)]);
 }
 
-std::vector<Loop> contours(const Lattice& f, double level) {
-  std::vector<Link> links;
-  for (int j = 0; j + 1 < f.height; ++j)
-    for (int i = 0; i + 1 < f.width; ++i) link_cell(f, level, i, j, links);
-  std::sort(links.begin(), links.end());
+void add_links(const Lattice& f, double level, int i_begin, int i_end, int j_begin, int j_end,
+               std::vector<Link>& links) {
+  for (int j = std::max(0, j_begin); j < std::min(f.height - 1, j_end); ++j)
+    for (int i = std::max(0, i_begin); i < std::min(f.width - 1, i_end); ++i) link_cell(f, level, i, j, links);
+}
+
+std::vector<Loop> join_links(std::vector<Link> links) {
+  std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.from < b.from; });
   std::vector<char> used(links.size(), 0);
   std::vector<Loop> loops;
   for (size_t first = 0; first < links.size(); ++first) {
@@ -84,14 +84,21 @@ std::vector<Loop> contours(const Lattice& f, double level) {
     Loop loop;
     for (size_t at = first; !used[at];) {
       used[at] = 1;
-      loop.push_back(crossing(f, level, links[at].from));
-      const auto next = std::lower_bound(links.begin(), links.end(), Link{links[at].to, 0});
+      loop.push_back(links[at].at);
+      const auto next = std::lower_bound(links.begin(), links.end(), links[at].to,
+                                         [](const Link& a, std::uint64_t side) { return a.from < side; });
       ADIT_CHECK(next != links.end() && next->from == links[at].to);  // else a line runs off the lattice
       at = static_cast<size_t>(next - links.begin());
     }
     loops.push_back(std::move(loop));
   }
   return loops;
+}
+
+std::vector<Loop> contours(const Lattice& f, double level) {
+  std::vector<Link> links;
+  add_links(f, level, 0, f.width, 0, f.height, links);
+  return join_links(std::move(links));
 }
 
 double enclosed_area(const Loop& loop) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace adit {
 namespace {
@@ -14,14 +15,8 @@ constexpr double lattice_m = 0.2;
 constexpr double far_m = 1e3;
 constexpr double deepest_m = 8;  // to which distances within polygons are told
 constexpr int band_rows = 64;
-
-struct Frame2 {
-  Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
-  void add(const Vec2& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-};
+constexpr int block_nodes = 512;  // side of the blocks in which ribs are traced
+constexpr double seen_m = 3.2;    // beyond a window's frame
 
 Lattice lattice_over(const Frame2& box, double margin) {
   Lattice f;
@@ -29,15 +24,19 @@ Lattice lattice_over(const Frame2& box, double margin) {
   f.origin = ((box.low.array() - margin) / lattice_m).floor().matrix() * lattice_m;
   f.width = static_cast<int>(std::ceil((box.high.x() + margin - f.origin.x()) / lattice_m)) + 1;
   f.height = static_cast<int>(std::ceil((box.high.y() + margin - f.origin.y()) / lattice_m)) + 1;
-  f.value.assign(static_cast<size_t>(f.width) * f.height, static_cast<float>(far_m));
   return f;
+}
+
+void fill_far(Lattice& f) {
+  f.value.assign(static_cast<size_t>(f.width) * f.height, static_cast<float>(far_m));
 }
 
 // Calls f(i, j) for the nodes of rows [first, last) within `reach` of the piece a-b.
 template <class F>
 void near_piece(const Lattice& field, const Vec2& a, const Vec2& b, double reach, int first, int last, const F& f) {
-  const Vec2 low = (a.cwiseMin(b).array() - reach - field.origin.array()) / field.cell_m;
-  const Vec2 high = (a.cwiseMax(b).array() + reach - field.origin.array()) / field.cell_m;
+  const Vec2 first_node(field.i0, field.j0);
+  const Vec2 low = (a.cwiseMin(b).array() - reach - field.origin.array()) / field.cell_m - first_node.array();
+  const Vec2 high = (a.cwiseMax(b).array() + reach - field.origin.array()) / field.cell_m - first_node.array();
   const int i0 = std::max(0, static_cast<int>(std::ceil(low.x()))),
             i1 = std::min(field.width - 1, static_cast<int>(high.x()));
   const int j0 = std::max(first, static_cast<int>(std::ceil(low.y()))),
@@ -63,14 +62,19 @@ double piece_distance(const Vec2& a, const Vec2& b, const Vec2& p) {
   return (w - t * u).norm();
 }
 
+double widest_half_m(const Drift& drift) {
+  double widest = 0;
+  for (size_t k = 0; k < drift.line.size(); ++k) widest = std::max({widest, drift.left[k], drift.right[k]});
+  return widest;
+}
+
 // Signed distance from the union of the drifts: outside it is exact, for the distance from a union is the least one.
-void unite(const std::vector<Drift>& drifts, double reach, Outline& o) {
+void unite(const std::vector<Drift>& drifts, const std::vector<size_t>& which, double reach, Outline& o) {
   Lattice& f = o.depth;
   for_bands(f, [&](int first, int last) {
-    for (size_t d = 0; d < drifts.size(); ++d) {
+    for (size_t d : which) {
       const Drift& drift = drifts[d];
-      double widest = 0;
-      for (size_t k = 0; k < drift.line.size(); ++k) widest = std::max({widest, drift.left[k], drift.right[k]});
+      const double widest = widest_half_m(drift);
       for (size_t k = 0; k + 1 < drift.line.size(); ++k) {
         near_piece(f, drift.line[k], drift.line[k + 1], widest + reach, first, last, [&](int i, int j) {
           const auto distance = static_cast<float>(signed_distance(drift, k, f.node(i, j)));
@@ -87,18 +91,16 @@ void unite(const std::vector<Drift>& drifts, double reach, Outline& o) {
 // The rock that is left when discs of the radius are rolled through it: erode by the radius, grow by it again. The
 // result is the signed distance from the new ribs, up to a radius on the rock's side.
 void open_rock(Lattice& f, double radius) {
-  const std::vector<Loop> cores = contours(f, radius);
+  std::vector<Link> cores;
+  add_links(f, radius, 0, f.width, 0, f.height, cores);
   std::vector<float> gap(f.value.size(), static_cast<float>(far_m));
   const double reach = radius + 1.0;
   for_bands(f, [&](int first, int last) {
-    for (const Loop& core : cores) {
-      for (size_t k = 0; k < core.size(); ++k) {
-        const Vec2 &a = core[k], &b = core[(k + 1) % core.size()];
-        near_piece(f, a, b, reach, first, last, [&](int i, int j) {
-          float& least = gap[f.index(i, j)];
-          least = std::min(least, static_cast<float>(piece_distance(a, b, f.node(i, j))));
-        });
-      }
+    for (const Link& core : cores) {
+      near_piece(f, core.at, core.next, reach, first, last, [&](int i, int j) {
+        float& least = gap[f.index(i, j)];
+        least = std::min(least, static_cast<float>(piece_distance(core.at, core.next, f.node(i, j))));
+      });
     }
   });
   for (size_t n = 0; n < gap.size(); ++n) {
@@ -108,13 +110,14 @@ void open_rock(Lattice& f, double radius) {
   }
 }
 
-void round_off(Outline& o, double corner_radius_m, const std::string& cause) {
-  open_rock(o.depth, corner_radius_m);
-  o.loops = contours(o.depth, 0);
-  const auto outer = [](const Loop& loop) { return enclosed_area(loop) > 0; };
-  if (std::count_if(o.loops.begin(), o.loops.end(), outer) != 1)
-    throw Error("world: the void falls into several parts; " + cause);
-  std::rotate(o.loops.begin(), std::find_if(o.loops.begin(), o.loops.end(), outer), o.loops.end());
+void build_walls(const std::vector<Wall>& walls, Lattice& f) {
+  for (const Wall& w : walls) {
+    const double reach = 0.5 * std::hypot(w.wide_m, w.thick_m) + 1;
+    near_piece(f, w.middle, w.middle, reach, 0, f.height, [&](int i, int j) {
+      float& depth = f.value[f.index(i, j)];
+      depth = std::max(depth, static_cast<float>(-w.distance(f.node(i, j))));
+    });
+  }
 }
 
 // Marks the nodes of rows [first, last) inside of a polygon: those that a row reaches after an odd number of crossings.
@@ -154,26 +157,101 @@ void spread_nearest(Outline& o, double reach) {
   }
 }
 
+double reach_of(double corner_radius_m) {
+  return 2 * corner_radius_m + 1.5;
+}
+
 }  // namespace
 
-Outline outline_of(const std::vector<Drift>& drifts, double corner_radius_m) {
-  Outline o;
-  const double reach = 2 * corner_radius_m + 1.5;
+Workings::Workings(std::vector<Drift> drifts, std::vector<Wall> walls, double corner_radius_m)
+    : drifts_(std::move(drifts)), walls_(std::move(walls)), radius_(corner_radius_m) {
   Frame2 box;
-  for (const Drift& d : drifts)
-    for (const Vec2& p : d.line) box.add(p);
-  o.depth = lattice_over(box, 10 + reach);
+  for (const Drift& d : drifts_) {
+    Frame2 own;
+    for (const Vec2& p : d.line) own.add(p);
+    box.add(own.low);
+    box.add(own.high);
+    const double half = widest_half_m(d);
+    drift_frame_.push_back({own.low.array() - half, own.high.array() + half});
+  }
+  frame_ = lattice_over(box, 10 + reach_of(radius_));
+}
+
+Workings::Workings(Lattice depth, std::vector<Drift> drifts, double corner_radius_m)
+    : drifts_(std::move(drifts)), radius_(corner_radius_m), given_(std::move(depth)) {}
+
+// What is found near the border of a window lacks what lies beyond it: windows are taken with a margin.
+Outline Workings::nodes(int i0, int j0, int i1, int j1) const {
+  const int margin = static_cast<int>(std::ceil((radius_ + 1) / lattice_m)) + 2;
+  Outline o;
+  o.depth = frame_;
+  o.depth.i0 = std::max(0, i0 - margin);
+  o.depth.j0 = std::max(0, j0 - margin);
+  o.depth.width = std::min(frame_.width, i1 + margin) - o.depth.i0;
+  o.depth.height = std::min(frame_.height, j1 + margin) - o.depth.j0;
+  fill_far(o.depth);
   o.nearest.assign(o.depth.value.size(), -1);
-  unite(drifts, reach, o);
-  round_off(o, corner_radius_m, "widths are too small for the wander (world.wall_wander_m)");
+  const Frame2 seen{o.depth.node(0, 0), o.depth.node(o.depth.width - 1, o.depth.height - 1)};
+  std::vector<size_t> near;
+  for (size_t d = 0; d < drifts_.size(); ++d)
+    if (drift_frame_[d].meets(seen, reach_of(radius_))) near.push_back(d);
+  if (near.empty()) return o;
+  unite(drifts_, near, reach_of(radius_), o);
+  open_rock(o.depth, radius_);
+  build_walls(walls_, o.depth);
   return o;
+}
+
+Outline Workings::whole() const {
+  if (has_windows()) return nodes(0, 0, frame_.width, frame_.height);
+  Outline o;
+  o.depth = given_;
+  fill_far(o.depth);
+  o.nearest.assign(given_.value.size(), -1);
+  std::vector<size_t> all(drifts_.size());
+  std::iota(all.begin(), all.end(), size_t{0});
+  unite(drifts_, all, reach_of(radius_), o);
+  o.depth = given_;
+  spread_nearest(o, reach_of(radius_));
+  open_rock(o.depth, radius_);
+  return o;
+}
+
+Outline Workings::window(const Frame2& frame) const {
+  const Vec2 low = (frame.low.array() - seen_m - frame_.origin.array()) / lattice_m;
+  const Vec2 high = (frame.high.array() + seen_m - frame_.origin.array()) / lattice_m;
+  return nodes(static_cast<int>(std::floor(low.x())), static_cast<int>(std::floor(low.y())),
+               static_cast<int>(std::ceil(high.x())) + 1, static_cast<int>(std::ceil(high.y())) + 1);
+}
+
+std::vector<Loop> Workings::ribs() const {
+  std::vector<Link> links;
+  if (!has_windows()) {
+    const Outline all = whole();
+    add_links(all.depth, 0, 0, all.depth.width, 0, all.depth.height, links);
+  }
+  for (int j = 0; has_windows() && j < frame_.height; j += block_nodes) {
+    for (int i = 0; i < frame_.width; i += block_nodes) {
+      const Lattice f = nodes(i, j, i + block_nodes + 1, j + block_nodes + 1).depth;
+      add_links(f, 0, i - f.i0, i - f.i0 + block_nodes, j - f.j0, j - f.j0 + block_nodes, links);
+    }
+  }
+  std::vector<Loop> ribs = join_links(std::move(links));
+  const auto outer = [](const Loop& loop) { return enclosed_area(loop) > 0; };
+  if (std::count_if(ribs.begin(), ribs.end(), outer) != 1)
+    throw Error(std::string("world: the void falls into several parts; ") +
+                (has_windows() ? "widths are too small for the wander (world.wall_wander_m)"
+                               : "the polygons must form one mine"));
+  std::rotate(ribs.begin(), std::find_if(ribs.begin(), ribs.end(), outer), ribs.end());
+  return ribs;
 }
 
 Lattice depth_of(const std::vector<Polygon>& polygons, double corner_radius_m) {
   Frame2 box;
   for (const Polygon& polygon : polygons)
     for (const Vec2& p : polygon[0]) box.add(p);
-  Lattice f = lattice_over(box, 10 + 2 * corner_radius_m + 1.5);
+  Lattice f = lattice_over(box, 10 + reach_of(corner_radius_m));
+  fill_far(f);
   std::vector<char> inside(f.value.size(), 0);
   for_bands(f, [&](int first, int last) {
     for (const Polygon& polygon : polygons) {
@@ -194,22 +272,10 @@ Lattice depth_of(const std::vector<Polygon>& polygons, double corner_radius_m) {
   return f;
 }
 
-Outline outline_of(const Lattice& depth, const std::vector<Drift>& drifts, double corner_radius_m) {
-  Outline o;
-  o.depth = depth;
-  std::fill(o.depth.value.begin(), o.depth.value.end(), static_cast<float>(far_m));
-  o.nearest.assign(depth.value.size(), -1);
-  unite(drifts, 2 * corner_radius_m + 1.5, o);
-  o.depth = depth;
-  spread_nearest(o, 2 * corner_radius_m + 1.5);
-  round_off(o, corner_radius_m, "the polygons must form one mine");
-  return o;
-}
-
 int passage_at(const Outline& o, const Vec2& p) {
   const Vec2 at = ((p - o.depth.origin) / o.depth.cell_m).array().round();
-  const int i = std::clamp(static_cast<int>(at.x()), 0, o.depth.width - 1);
-  const int j = std::clamp(static_cast<int>(at.y()), 0, o.depth.height - 1);
+  const int i = std::clamp(static_cast<int>(at.x()) - o.depth.i0, 0, o.depth.width - 1);
+  const int j = std::clamp(static_cast<int>(at.y()) - o.depth.j0, 0, o.depth.height - 1);
   return o.nearest[o.depth.index(i, j)];
 }
 

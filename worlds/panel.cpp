@@ -86,7 +86,7 @@ void add_crosscuts(MinePlan& plan, const PanelSettings& s, EntrySet& set, std::u
       const int a = node_at(plan, set, gap, low), b = node_at(plan, set, gap + 1, high);
       // The first and the last join the entries: they are always driven through.
       const bool end = k == 0 || k + 1 == x.size();
-      const CrosscutShares shares{s.missing_share, s.dead_end_share, s.stopping_share};
+      const CrosscutShares shares{s.missing_share, s.dead_end_share, s.stopping_share, s.stopping_m};
       drive_crosscut(plan, a, b, s.width_m, end ? CrosscutShares{} : shares, seed, gap * 1000 + k);
     }
     if (s.retreat_rows > 0) retreat(plan, s, set, gap, x);

@@ -50,9 +50,31 @@ void split(MinePlan& plan, size_t k, size_t segment, const Vec2& point, int node
   plan.passages.push_back(second);
 }
 
+struct Span {
+  Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
+  bool meets(const Span& o) const {
+    const double near_m = 1e-6;
+    return low.x() <= o.high.x() + near_m && o.low.x() <= high.x() + near_m && low.y() <= o.high.y() + near_m &&
+           o.low.y() <= high.y() + near_m;
+  }
+};
+
+std::vector<Span> spans_of(const MinePlan& plan) {
+  std::vector<Span> spans(plan.passages.size());
+  for (size_t k = 0; k < spans.size(); ++k) {
+    for (const Vec2& p : plan.passages[k].line) {
+      spans[k].low = spans[k].low.cwiseMin(p);
+      spans[k].high = spans[k].high.cwiseMax(p);
+    }
+  }
+  return spans;
+}
+
 bool split_first_crossing(MinePlan& plan) {
+  const std::vector<Span> spans = spans_of(plan);
   for (size_t k = 0; k < plan.passages.size(); ++k) {
     for (size_t l = k + 1; l < plan.passages.size(); ++l) {
+      if (!spans[k].meets(spans[l])) continue;
       const auto crossing = crossing_of(plan.passages[k].line, plan.passages[l].line);
       if (!crossing) continue;
       const int node = static_cast<int>(plan.nodes.size());

@@ -15,12 +15,19 @@ struct PlanPassage {
   std::vector<Vec2> line;  // from a to b, both included
 };
 
+/// A wall built across a passage, between two dead ends a metre to either side of it: a stopping.
+struct PlanWall {
+  int a, b;  // nodes of the dead ends
+  double thick_m;
+};
+
 /// Centre lines with widths: one connected graph. Nodes at which the plan was cut off by a selection's border are
 /// marked.
 struct MinePlan {
   std::vector<Vec2> nodes;
   std::vector<char> cut;  // (nodes)
   std::vector<PlanPassage> passages;
+  std::vector<PlanWall> walls = {};
 };
 
 /// The plan that the settings ask for, checked: crossings are nodes, all is connected, widths are positive.

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "worlds/ogr.h"
 
 #include <nlohmann/json.hpp>
 
@@ -113,10 +114,15 @@ void add_geometry(const json& geometry, const std::string& where, std::vector<Po
 
 }  // namespace
 
+bool names_polygons(const std::string& plan) {
+  const size_t dot = plan.find_last_of("./");
+  return dot != std::string::npos && plan[dot] == '.' && plan.substr(dot) != ".json";
+}
+
 std::vector<Polygon> read_polygons(const std::string& file) {
   std::vector<Polygon> polygons;
   try {
-    const json text = json::parse(read_text(file));
+    const json text = json::parse(file.ends_with(".geojson") ? read_text(file) : as_geojson(file));
     const std::string type = text.at("type").get<std::string>();
     if (type != "FeatureCollection") {
       add_geometry(type == "Feature" ? text.at("geometry") : text, file, polygons);

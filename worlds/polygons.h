@@ -17,4 +17,7 @@ using Polygon = std::vector<Loop>;
 ///         km, degrees instead of metres
 std::vector<Polygon> read_polygons(const std::string& file);
 
+/// Whether a plan's name is that of a file of polygons: its ending is another one than .json.
+bool names_polygons(const std::string& plan);
+
 }  // namespace adit

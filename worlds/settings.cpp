@@ -19,6 +19,7 @@ Fields fields(PanelSettings& s) {
       {"missing_share", &s.missing_share, "share of the crosscuts that are not driven", 0, 1},
       {"dead_end_share", &s.dead_end_share, "share of the crosscuts driven from one side only", 0, 1},
       {"stopping_share", &s.stopping_share, "share of the crosscuts closed by a stopping", 0, 1},
+      {"stopping_m", &s.stopping_m, "thickness of a stopping", 0.3, 2},
       {"turnout_share", &s.turnout_share, "share of the junctions with a corner cut off", 0, 1},
       {"loop_road", &s.loop_road, "an oval round from the first entry's end to the last one's"},
       {"retreat_rows", &s.retreat_rows, "rows of pillars at the far end that are split into stumps, gob beyond", 0,
@@ -54,6 +55,8 @@ Fields fields(DistrictSettings& s) {
       {"length_m", &s.length_m, "of passages, reached by whole pitches of the mains", 100, 200000},
       {"mains", &s.mains, "entries of the mains", 2, 12},
       {"main_spacing_m", &s.main_spacing_m, "between their centre lines", 6, 100},
+      {"submain_entries", &s.submain_entries, "entries of the sub-mains; 0: panels turn off the mains", 0, 8},
+      {"submain_panels", &s.submain_panels, "pairs of panels along each sub-main", 1, 50},
       {"panel_entries", &s.panel_entries, "entries of each panel", 2, 12},
       {"panel_spacing_m", &s.panel_spacing_m, "between their centre lines", 6, 100},
       {"panel_crosscuts", &s.panel_crosscuts, "crosscuts of each panel", 1, 90},
@@ -61,8 +64,10 @@ Fields fields(DistrictSettings& s) {
       {"spacing_sd_m", &s.spacing_sd_m, "scatter of all spacings", 0, 3},
       {"barrier_m", &s.barrier_m, "width of the barrier pillars beside mains and between panels", 8, 60},
       {"width_m", &s.width_m, "of entries and crosscuts", 1.5, 9},
+      {"stagger", &s.stagger, "share of the spacing by which every second row of crosscuts is moved", 0, 0.9},
       {"missing_share", &s.missing_share, "share of the crosscuts that are not driven", 0, 1},
       {"stopping_share", &s.stopping_share, "share of the crosscuts closed by a stopping", 0, 1},
+      {"stopping_m", &s.stopping_m, "thickness of a stopping", 0.3, 2},
   };
 }
 
@@ -76,6 +81,8 @@ Fields fields(WearSettings& s) {
       {"bedding_m", &s.bedding_m, "height of the roof's steps from one bedding plane to the next", 0, 0.2},
       {"scallop_m", &s.scallop_m, "depth of the cutting drum's grooves in the ribs", 0, 0.05},
       {"scallop_pitch_m", &s.scallop_pitch_m, "height from groove to groove", 0.2, 1},
+      {"cleat_m", &s.cleat_m, "depth of the steps in which ribs break along two sets of upright joints", 0, 0.3},
+      {"cleat_deg", &s.cleat_deg, "bearing of the first set from x; the second is at right angles to it", 0, 90},
   };
 }
 
@@ -125,6 +132,8 @@ Fields fields(WorldSettings& s) {
       {"reflectivity", &s.reflectivity, "of rock dust: mean, diffuse, at 905 nm", 0.02, 1},
       {"reflectivity_sd", &s.reflectivity_sd, "its smooth variation", 0, 0.3},
       {"mesh_edge_m", &s.mesh_edge_m, "length of the mesh's edges", 0.05, 1},
+      {"tile_m", &s.tile_m, "side of the squares in which the mine is made one after the other; 0: in one piece", 0,
+       2000},
   };
   append(all, "panel", fields(s.panel));
   append(all, "rooms", fields(s.rooms));

@@ -4,25 +4,44 @@
 #include "base/mesh.h"
 #include "worlds/outline.h"
 #include "worlds/terrain.h"
+#include "worlds/tiles.h"
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <vector>
 
 namespace adit {
 
-/// The surface of a mine's void.
+/// The surface of a tile's void, open at the cuts.
 struct Shell {
   Mesh mesh;
-  std::vector<Loop> mid_height;   // the ribs at mid height, void to the left; the outer one first, then pillars by id
-  std::vector<double> volume_m3;  // (passages) each one's share of the void: what lies between its floor and its roof,
-                                  // and between that and its ribs
+  /// What the tile has in common with that on a cut's other side: floor, roof and the rows between of the column at the
+  /// cut's left end, the same of its right end, then floor and roof of the points between from left to right.
+  std::map<int, std::vector<std::uint32_t>> seams;
 };
+
+/// What of a mine is the same for all of its tiles.
+struct ShellPlan {
+  const Tiling& tiling;
+  const Workings& workings;
+  std::function<bool(const Vec2&)> capped;  // where a rib is not rock: the plan was cut off, or a wall stands
+  double edge_m;
+  int rows;  // of faces from floor to roof; even
+  std::uint64_t seed;
+};
+
+/// Rows of faces for a height.
+int rows_of(double height_m, double edge_m);
 
 /// Floor and roof over one triangulation of the plan, ribs as rows of quads between their outlines. Ribs are rough as a
 /// field in space; towards floor and roof their offset becomes that of mid height, so that the three meet in one line.
-/// `capped(p)` tells where a rib is not rock but where the plan was cut off.
-Shell make_shell(const Outline& outline, const Terrain& terrain, const std::function<bool(const Vec2&)>& capped,
-                 double edge_m, double height_m, std::uint64_t seed);
+/// Tiles meet in the same vertices, whatever their order.
+/// @param outline     a window that shows the tile's frame
+/// @param volume_m3   (passages) each one's share of the void grows: what lies between its floor and its roof, and
+///                    between that and its ribs
+/// @param mid_height  (loops x columns) the ribs at mid height: the tile's columns are written
+Shell make_shell(const ShellPlan& plan, const Tile& tile, const Outline& outline, const Terrain& terrain,
+                 std::vector<double>& volume_m3, std::vector<Loop>& mid_height);
 
 }  // namespace adit

@@ -11,6 +11,8 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr int roll_count = 12;
 
+constexpr double cleat_length_m = 4;                           // over which a rib keeps to one joint
+constexpr std::uint64_t cleat_joint = std::uint64_t{7} << 32;  // beyond the addresses of the fields
 constexpr double full_sag_m = 1;  // from the ribs: where sag and heave reach their full height
 
 // A field of unit variance whose values are all but normal.
@@ -65,7 +67,9 @@ Terrain::Terrain(const WorldSettings& s, const Vec2& middle, const Lattice& dept
       sag_(unit(25, seed, Draw::world_roughness, 4, true)),
       bedding_(unit(8, seed, Draw::world_roughness, 5, true)),
       dust_(unit(s.rock.patch_m, seed, Draw::world_material, 1, false)),
-      water_(unit(2 * s.rock.patch_m, seed, Draw::world_material, 2, false)) {
+      water_(unit(2 * s.rock.patch_m, seed, Draw::world_material, 2, false)),
+      cleat_(unit(cleat_length_m, seed, Draw::world_roughness, 6, true)),
+      seed_(seed) {
   const double dip = 2 * pi * uniform(seed, Draw::world_roll, 0);
   grade_ = 0.01 * s.grade_percent * Vec2(std::cos(dip), std::sin(dip));
   const double shortest = std::min(s.roll_min_m, s.roll_max_m), longest = std::max(s.roll_min_m, s.roll_max_m);
@@ -104,8 +108,23 @@ double Terrain::roof_z(const Vec2& p) const {
   return z;
 }
 
-double Terrain::rib_offset_m(const Vec3& p) const {
+// The rock has broken back or stands out to a joint of that set which the rib faces most. Joints are cleat_m apart on the
+// average; which of them it is changes along the rib, in steps.
+double Terrain::cleat_offset_m(const Vec2& p, const Vec2& normal) const {
+  const double bearing = wear_.cleat_deg * pi / 180, d = wear_.cleat_m;
+  const Vec2 first(std::cos(bearing), std::sin(bearing)), second(-first.y(), first.x());
+  const bool faces_first = std::abs(normal.dot(first)) > std::abs(normal.dot(second));
+  const Vec2 across = faces_first ? first : second;
+  const double at = across.dot(p - middle_), joint = std::floor(at / d + 0.8 * cleat_(p));
+  const auto address = static_cast<std::uint64_t>(static_cast<std::int64_t>(joint) + (std::int64_t{1} << 40));
+  const double off = uniform(seed_, Draw::world_roughness, cleat_joint + faces_first, address) - 0.5;
+  const double plane = d * (joint + 0.5 + 0.6 * off);
+  return std::clamp((plane - at) / normal.dot(across), -1.2 * d, 1.2 * d);
+}
+
+double Terrain::rib_offset_m(const Vec3& p, const Vec2& normal) const {
   double offset = rib_(p);
+  if (wear_.cleat_m > 0) offset += cleat_offset_m(p.head<2>(), normal);
   if (wear_.scallop_m > 0)
     offset += wear_.scallop_m * (0.5 - std::abs(std::sin(pi * (p.z() - seam_z(p.head<2>())) / wear_.scallop_pitch_m)));
   return offset;

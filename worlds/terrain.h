@@ -29,7 +29,8 @@ class Terrain {
   double seam_z(const Vec2& p) const;    // the floor without roughness
   double height_m(const Vec2& p) const;  // without roughness
   /// How far a rib's rock stands back, > 0 into the rock.
-  double rib_offset_m(const Vec3& p) const;
+  /// @param normal  in plan, unit, into the rock
+  double rib_offset_m(const Vec3& p, const Vec2& normal) const;
   /// How far the rib has spalled at mid height beyond that, >= 0.
   double slough_m(const Vec2& p) const;
   Rock rock(const Vec3& p, Label label) const;
@@ -40,6 +41,7 @@ class Terrain {
     double phase;
   };
   double across(const Vec2& p) const;  // 0 at the ribs, 1 in the middle of a passage
+  double cleat_offset_m(const Vec2& p, const Vec2& normal) const;
 
   double mean_height_, roll_amplitude_, mean_reflectivity_;
   WearSettings wear_;
@@ -49,7 +51,8 @@ class Terrain {
   const Lattice& depth_;
   Vec2 middle_, grade_;
   std::vector<Roll> rolls_;
-  Waves height_, floor_, roof_, rib_, patches_, slough_, sag_, bedding_, dust_, water_;
+  Waves height_, floor_, roof_, rib_, patches_, slough_, sag_, bedding_, dust_, water_, cleat_;
+  std::uint64_t seed_;
 };
 
 }  // namespace adit

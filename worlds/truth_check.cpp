@@ -22,20 +22,15 @@ void expect_near(Faults& faults, const std::string& what, double truth, double f
     faults.push_back(what + ": the truth says " + number(truth) + ", the mesh " + number(found));
 }
 
-void check_ids(const World& world, Faults& faults) {
-  const Mesh& m = world.mesh;
-  const int passages = static_cast<int>(world.passages.size()), pillars = static_cast<int>(world.pillars.size());
-  size_t wrong_part = 0, wrong_passage = 0;
-  for (size_t f = 0; f < m.part.size(); ++f) {
-    const bool level = m.label[f] == Label::floor || m.label[f] == Label::roof;
-    wrong_part += level ? m.part[f] < 0 || m.part[f] >= passages : m.part[f] < -1 || m.part[f] >= pillars;
-  }
-  for (int id : m.passage) wrong_passage += id < 0 || id >= passages;
-  const auto say = [&](size_t n, const char* what) {
-    if (n > 0) faults.push_back(std::to_string(n) + " faces name a " + what + " that the truth does not list");
+void check_ids(const World& truth, const MeshTally& mesh, Faults& faults) {
+  const auto say = [&](int named, size_t listed, const char* what) {
+    if (named > static_cast<int>(listed))
+      faults.push_back("faces name " + std::string(what) + " " + std::to_string(named - 1) + ", the truth lists " +
+                       std::to_string(listed));
   };
-  say(wrong_part, "part");
-  say(wrong_passage, "passage");
+  say(mesh.passages, truth.passages.size(), "passage");
+  say(mesh.pillars, truth.pillars.size(), "pillar");
+  if (mesh.nameless > 0) faults.push_back(std::to_string(mesh.nameless) + " faces name no passage or pillar");
 }
 
 void check_areas(const World& world, Faults& faults) {
@@ -52,20 +47,26 @@ void check_areas(const World& world, Faults& faults) {
 
 }  // namespace
 
-std::vector<std::string> check_truth(const World& world) {
+std::vector<std::string> check_truth(const World& world, const MeshTally& mesh) {
   Faults faults;
-  const double volume = enclosed_volume(world.mesh);
+  const double volume = mesh.six_volumes / 6;
   expect_near(faults, "volume", world.numbers.volume_m3, volume, 1e-9);
   double sum = 0;
   for (const Passage& p : world.passages) sum += p.volume_m3;
   expect_near(faults, "sum of the passages' volumes", sum, volume, 1e-9);
-  if (!world.mesh.part.empty() && world.mesh.label.size() == world.mesh.part.size()) check_ids(world, faults);
+  check_ids(world, mesh, faults);
   check_areas(world, faults);
   const int loops = static_cast<int>(world.passages.size()) - static_cast<int>(world.junctions.size()) + 1;
   if (world.numbers.loops != loops)
     faults.push_back("loops: the truth says " + std::to_string(world.numbers.loops) + ", the graph has " +
                      std::to_string(loops));
   return faults;
+}
+
+std::vector<std::string> check_truth(const World& world) {
+  MeshTally tally;
+  if (!world.mesh.vertex.empty()) tally.add(world.mesh, world.mesh.vertex.front());
+  return check_truth(world, tally);
 }
 
 }  // namespace adit

@@ -9,9 +9,11 @@
 #include "worlds/shell.h"
 #include "worlds/skeleton.h"
 #include "worlds/terrain.h"
+#include "worlds/tiles.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace adit {
 namespace {
@@ -21,7 +23,31 @@ std::string text(double v) {
   return t.substr(0, t.find('.') + 3);
 }
 
+constexpr double most_triangles = 1e8, most_triangles_in_tiles = 2e9;
+
+// Floor and roof of triangles with sides of an edge, ribs of squares cut in two.
+double triangles_of(const WorldSettings& s, const MinePlan& plan) {
+  double n = 0;
+  for (const PlanPassage& p : plan.passages)
+    for (size_t i = 1; i < p.line.size(); ++i)
+      n += (p.line[i] - p.line[i - 1]).norm() * (2 * p.width_m / std::sqrt(3.0 / 16) + 4 * s.height_m);
+  return n / (s.mesh_edge_m * s.mesh_edge_m);
+}
+
+void check_size(const WorldSettings& s, const MinePlan& plan) {
+  const double n = triangles_of(s, plan), most = s.tile_m > 0 ? most_triangles_in_tiles : most_triangles;
+  if (n <= most) return;
+  throw Error("world.mesh_edge_m = " + text(s.mesh_edge_m) + ": the mine would have some " +
+              std::to_string(std::llround(n / 1e6)) + " million triangles, at most " +
+              std::to_string(std::llround(most / 1e6)) + " million are made" +
+              (s.tile_m > 0 ? "" : " in one piece (world.tile_m = 0)") + "; an edge of " +
+              text(s.mesh_edge_m * std::sqrt(n / most) + 0.005) + " m would do");
+}
+
 void check_settings(const WorldSettings& s, const MinePlan& plan) {
+  if (s.tile_m > 0 && s.tile_m < 40)
+    throw Error("world.tile_m = " + text(s.tile_m) + ": 0 for one piece, or 40 and more");
+  check_size(s, plan);
   double finest = plan.passages[0].width_m;
   for (const PlanPassage& p : plan.passages) finest = std::min(finest, p.width_m);
   const double coarsest = std::min(finest, s.height_m) / 3;
@@ -41,7 +67,7 @@ Vec2 middle_of(const MinePlan& plan) {
   return 0.5 * (low + high);
 }
 
-// Ends of passages that are not rock: where the selection's border cut them off, stoppings, gob.
+// Ends of passages that are not rock: where the selection's border cut them off, gob.
 struct CutEnd {
   const Drift* drift;
   bool at_b;
@@ -57,11 +83,29 @@ std::vector<CutEnd> cut_ends(const MinePlan& plan, const std::vector<Drift>& dri
   return ends;
 }
 
-bool is_cap(const std::vector<CutEnd>& ends, const Vec2& p) {
-  return std::any_of(ends.begin(), ends.end(), [&](const CutEnd& e) {
-    return ((e.at_b ? e.drift->line.back() : e.drift->line.front()) - p).norm() < e.half_m &&
-           std::abs(beyond_end(*e.drift, e.at_b, p)) < 0.3;
-  });
+// What in a tile is no rock: the ends of passages and the walls.
+struct Faces {
+  std::vector<CutEnd> ends;
+  std::vector<Wall> walls;
+
+  bool operator()(const Vec2& p) const {
+    return std::any_of(walls.begin(), walls.end(), [&](const Wall& w) { return w.distance(p) < 0.08; }) ||
+           std::any_of(ends.begin(), ends.end(), [&](const CutEnd& e) {
+             return ((e.at_b ? e.drift->line.back() : e.drift->line.front()) - p).norm() < e.half_m &&
+                    std::abs(beyond_end(*e.drift, e.at_b, p)) < 0.3;
+           });
+  }
+};
+
+Faces faces_in(const Frame2& frame, const std::vector<CutEnd>& ends, const std::vector<Wall>& walls) {
+  Faces found;
+  for (const CutEnd& e : ends) {
+    const Vec2& p = e.at_b ? e.drift->line.back() : e.drift->line.front();
+    if (frame.meets({p, p}, e.half_m)) found.ends.push_back(e);
+  }
+  for (const Wall& w : walls)
+    if (frame.meets({w.middle, w.middle}, w.wide_m)) found.walls.push_back(w);
+  return found;
 }
 
 Vec3 on_floor(const Vec2& p, const Terrain& terrain) {
@@ -85,58 +129,173 @@ Passage passage_of(const PlanPassage& p, const Drift& d, const Terrain& terrain)
   return passage;
 }
 
-void add_graph(const MinePlan& plan, const std::vector<Drift>& drifts, const Terrain& terrain, World& world) {
+// Junctions of passages that are all known.
+void add_junctions(const MinePlan& plan, World& world) {
   world.junctions.resize(plan.nodes.size());
-  for (size_t i = 0; i < drifts.size(); ++i) {
+  for (size_t i = 0; i < world.passages.size(); ++i) {
     const PlanPassage& p = plan.passages[i];
-    world.passages.push_back(passage_of(p, drifts[i], terrain));
-    world.junctions[p.a].p_W = world.passages.back().centre_line.front();
-    world.junctions[p.b].p_W = world.passages.back().centre_line.back();
+    world.junctions[p.a].p_W = world.passages[i].centre_line.front();
+    world.junctions[p.b].p_W = world.passages[i].centre_line.back();
     world.junctions[p.a].passages.push_back(static_cast<int>(i));
     if (p.b != p.a) world.junctions[p.b].passages.push_back(static_cast<int>(i));
   }
 }
 
-void add_numbers(const std::vector<Loop>& mid_height, World& world) {
+void add_numbers(std::vector<Loop> mid_height, World& world) {
   double rock = 0;
   for (size_t l = 0; l < mid_height.size(); ++l) {
     const double area = enclosed_area(mid_height[l]);
     world.numbers.floor_area_m2 += area;  // pillars run clockwise: theirs are negative
     if (l == 0) continue;
     rock -= area;
-    world.pillars.push_back({{mid_height[l].rbegin(), mid_height[l].rend()}, -area});
+    std::reverse(mid_height[l].begin(), mid_height[l].end());
+    world.pillars.push_back({std::move(mid_height[l]), -area});
   }
-  world.numbers.volume_m3 = enclosed_volume(world.mesh);
+  world.outline = std::move(mid_height[0]);
   world.numbers.extraction_ratio = world.numbers.floor_area_m2 / (world.numbers.floor_area_m2 + rock);
   world.numbers.loops =
       static_cast<int>(world.passages.size()) - static_cast<int>(world.junctions.size()) + 1;  // connected
 }
 
+// Gives the vertices of the tiles their numbers in the mine.
+class Numbering {
+ public:
+  std::vector<std::uint32_t> ids_of(const Shell& shell) {
+    std::vector<std::uint32_t> ids(shell.mesh.vertex.size(), none);
+    for (const auto& [cut, seam] : shell.seams) {
+      const auto known = seams_.find(cut);
+      if (known == seams_.end()) continue;
+      ADIT_CHECK(known->second.size() == seam.size());
+      for (size_t k = 0; k < seam.size(); ++k) ids[seam[k]] = known->second[k];
+    }
+    for (std::uint32_t& id : ids)
+      if (id == none) id = next_++;
+    for (const auto& [cut, seam] : shell.seams) {
+      if (seams_.erase(cut) > 0) continue;  // both sides are done
+      for (std::uint32_t v : seam) seams_[cut].push_back(ids[v]);
+    }
+    return ids;
+  }
+
+ private:
+  static constexpr std::uint32_t none = 0xFFFFFFFF;
+  std::uint32_t next_ = 0;
+  std::map<int, std::vector<std::uint32_t>> seams_;
+};
+
+std::vector<MinePart::Frame> later_neighbours(const std::vector<Tile>& tiles, size_t t) {
+  std::vector<MinePart::Frame> later;
+  for (size_t u = t + 1; u < tiles.size(); ++u)
+    if (tiles[u].frame.meets(tiles[t].frame, 0)) later.push_back({u, tiles[u].frame.low, tiles[u].frame.high});
+  return later;
+}
+
+// Where two passages that share no node run into one another, in words; empty where none do.
+std::string overlap_of(const MinePlan& plan, const std::vector<Drift>& drifts) {
+  std::vector<Frame2> frames;
+  for (const Drift& d : drifts) {
+    frames.emplace_back();
+    for (const Vec2& p : d.line) frames.back().add(p);
+  }
+  for (size_t i = 0; i < drifts.size(); ++i) {
+    for (size_t j = i + 1; j < drifts.size(); ++j) {
+      const PlanPassage &p = plan.passages[i], &q = plan.passages[j];
+      if (p.a == q.a || p.a == q.b || p.b == q.a || p.b == q.b || !frames[i].meets(frames[j], p.width_m + q.width_m))
+        continue;
+      for (const Vec2& u : drifts[i].line)
+        for (const Vec2& v : drifts[j].line)
+          if ((u - v).norm() < 0.5 * (p.width_m + q.width_m))
+            return " near (" + std::to_string(std::lround(u.x())) + ", " + std::to_string(std::lround(u.y())) + ")";
+    }
+  }
+  return "";
+}
+
+// Each loop of the centre lines goes round rock of its own, else the rock between two passages is gone.
+void check_pillars(const WorldSettings& s, const MinePlan& plan, const Workings& workings, size_t pillars) {
+  const size_t loops = plan.passages.size() + 1 - plan.nodes.size();
+  if (pillars == loops || !workings.has_windows()) return;
+  throw Error("world." + (s.kind == "plan" ? "plan = \"" + s.plan + "\"" : s.kind) + ": the centre lines have " +
+              std::to_string(loops) + " loops, but " + std::to_string(pillars) +
+              " pillars would be left: passages run into one another" + overlap_of(plan, workings.drifts()) +
+              "; lower their widths (world.width_scale = " + text(s.width_scale) +
+              ", world.wander_m, world.wall_wander_m) or move them apart");
+}
+
+// A mine laid out in plan: what is left is to raise its tiles.
+struct Layout {
+  MinePlan plan;
+  Workings workings;
+  Tiling tiling;
+};
+
+Layout lay_out(const WorldSettings& s, std::uint64_t seed, const Progress& progress) {
+  const bool drawn = s.kind == "plan" && names_polygons(s.plan);
+  if (drawn && s.tile_m > 0)
+    throw Error("world.tile_m = " + text(s.tile_m) + ": a mine from polygons is made in one piece; 0 is needed");
+  Lattice depth = drawn ? depth_of(read_polygons(s.plan), s.corner_radius_m) : Lattice{};
+  Skeleton skeleton = drawn ? skeleton_of(depth) : Skeleton{make_plan(s, seed), {}};
+  check_settings(s, skeleton.plan);
+  progress("laying out the mine", 0, 1);
+  std::vector<Drift> drifts = drawn ? std::move(skeleton.drifts) : drive_passages(skeleton.plan, s, seed);
+  std::vector<Wall> walls = walls_of(skeleton.plan, drifts);
+  Workings workings = drawn ? Workings(std::move(depth), std::move(drifts), s.corner_radius_m)
+                            : Workings(std::move(drifts), std::move(walls), s.corner_radius_m);
+  const std::vector<Loop> ribs = workings.ribs();
+  check_pillars(s, skeleton.plan, workings, ribs.size() - 1);
+  Tiling tiling = tile_plan(skeleton.plan, workings, ribs, s.tile_m, s.mesh_edge_m);
+  progress("laying out the mine", 1, 1);
+  return {std::move(skeleton.plan), std::move(workings), std::move(tiling)};
+}
+
 }  // namespace
 
-World make_world(const WorldSettings& s, std::uint64_t seed, const Progress& progress) {
-  const bool drawn = s.kind == "plan" && s.plan.ends_with(".geojson");
-  const Lattice depth = drawn ? depth_of(read_polygons(s.plan), s.corner_radius_m) : Lattice{};
-  Skeleton skeleton = drawn ? skeleton_of(depth) : Skeleton{make_plan(s, seed), {}};
-  const MinePlan& plan = skeleton.plan;
-  check_settings(s, plan);
-  progress("laying out the mine", 0, 4);
-  const std::vector<Drift> drifts = drawn ? std::move(skeleton.drifts) : drive_passages(plan, s, seed);
-  const Outline outline = drawn ? outline_of(depth, drifts, s.corner_radius_m) : outline_of(drifts, s.corner_radius_m);
-  progress("laying out the mine", 1, 4);
-  const Terrain terrain(s, middle_of(plan), outline.depth, seed);
-  const std::vector<CutEnd> ends = cut_ends(plan, drifts);
-  Shell shell = make_shell(
-      outline, terrain, [&](const Vec2& p) { return is_cap(ends, p); }, s.mesh_edge_m, s.height_m, seed);
-  progress("laying out the mine", 3, 4);
+World make_parts(const WorldSettings& s, std::uint64_t seed, const std::function<void(MinePart&&)>& take,
+                 const Progress& progress) {
+  const Layout layout = lay_out(s, seed, progress);
+  const auto& [plan, workings, tiling] = layout;
+  const std::vector<CutEnd> ends = cut_ends(plan, workings.drifts());
+  const Vec2 middle = middle_of(plan);
   World world;
   world.name = s.kind == "plan" ? s.plan : s.kind;
-  world.mesh = std::move(shell.mesh);
-  add_graph(plan, drifts, terrain, world);
-  for (size_t i = 0; i < shell.volume_m3.size(); ++i) world.passages[i].volume_m3 = shell.volume_m3[i];
-  add_numbers(shell.mid_height, world);
-  world.outline = std::move(shell.mid_height[0]);
-  progress("laying out the mine", 4, 4);
+  world.passages.resize(plan.passages.size());
+  std::vector<double> volume_m3(plan.passages.size(), 0.0);
+  std::vector<Loop> mid_height;
+  for (const Loop& rib : tiling.ribs) mid_height.emplace_back(rib.size());
+  Numbering numbering;
+  Vec3 origin = Vec3::Zero();
+  MeshTally tally;
+  for (size_t t = 0; t < tiling.tiles.size(); ++t) {
+    const Tile& tile = tiling.tiles[t];
+    Frame2 seen = tile.frame;  // the tile tells of its passages to their ends
+    for (size_t p : tile.passages)
+      for (const Vec2& q : workings.drifts()[p].line) seen.add(q);
+    const Outline outline = tiling.tiles.size() == 1 ? workings.whole() : workings.window(seen);
+    const Terrain terrain(s, middle, outline.depth, seed);
+    const Faces faces = faces_in(tile.frame, ends, workings.walls());
+    Shell shell = make_shell({tiling, workings, faces, s.mesh_edge_m, rows_of(s.height_m, s.mesh_edge_m), seed}, tile,
+                             outline, terrain, volume_m3, mid_height);
+    for (size_t p : tile.passages) world.passages[p] = passage_of(plan.passages[p], workings.drifts()[p], terrain);
+    if (t == 0) origin = shell.mesh.vertex.front();
+    tally.add(shell.mesh, origin);
+    MinePart part{
+        t, {}, numbering.ids_of(shell), {t, tile.frame.low, tile.frame.high}, later_neighbours(tiling.tiles, t)};
+    part.mesh = std::move(shell.mesh);
+    take(std::move(part));
+    progress("raising the mine", static_cast<double>(t + 1), static_cast<double>(tiling.tiles.size()));
+  }
+  for (size_t i = 0; i < volume_m3.size(); ++i) world.passages[i].volume_m3 = volume_m3[i];
+  world.numbers.volume_m3 = tally.six_volumes / 6;
+  add_junctions(plan, world);
+  add_numbers(std::move(mid_height), world);
+  return world;
+}
+
+World make_world(const WorldSettings& s, std::uint64_t seed, const Progress& progress) {
+  Mesh mesh;
+  World world = make_parts(
+      s, seed, [&](MinePart&& part) { append(part, mesh); }, progress);
+  world.mesh = std::move(mesh);
   return world;
 }
 

@@ -2,11 +2,14 @@
 #pragma once
 
 #include "base/config.h"
+#include "base/mine_part.h"
 #include "base/progress.h"
 #include "base/route.h"
 #include "base/world.h"
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,13 +23,15 @@ struct PanelSettings {
   double crosscut_spacing_m = 30;  // between centre lines
   double spacing_sd_m = 1;         // scatter of both
   double crosscut_angle_deg = 90;  // to the entries
-  double stagger = 0;              // every second row of crosscuts is moved by this share of the spacing
+  double stagger = 0.35;           // every second row of crosscuts is moved by this share of the spacing: three-way
+                                   // junctions, as most of those in real mines are
   double width_m = 3.7;
   double stub_length_m = 9;   // dead ends by which entries run beyond the last crosscut
   double stub_share = 0.75;   // of the entries' ends that have one
   double missing_share = 0;   // of the crosscuts but the first and last: not driven
   double dead_end_share = 0;  // driven from one side only
-  double stopping_share = 0;  // closed by a stopping: two faces labelled cap
+  double stopping_share = 0;  // closed by a stopping: a wall with two faces labelled cap
+  double stopping_m = 0.4;    // its thickness
   double turnout_share = 0;   // of the junctions with a corner cut off
   bool loop_road = false;     // an oval round from the first entry's end to the last one's
   int retreat_rows = 0;       // rows of pillars at the far end that are split into stumps, gob beyond
@@ -54,11 +59,14 @@ struct RoomSettings {
   double through_share = 0.8;  // of them that were driven
 };
 
-/// A part of a large mine: mains with a panel to either side at each pitch, barrier pillars between.
+/// A part of a large mine: mains with a panel to either side at each pitch, barrier pillars between; or mains with
+/// sub-mains to either side, off which the panels turn.
 struct DistrictSettings {
   double length_m = 2000;  // of passages, reached by whole pitches
   int mains = 4;           // entries of the mains
   double main_spacing_m = 20;
+  int submain_entries = 0;  // of the sub-mains; 0: panels turn off the mains
+  int submain_panels = 2;   // pairs of panels along each sub-main
   int panel_entries = 3;
   double panel_spacing_m = 20;
   int panel_crosscuts = 4;
@@ -66,8 +74,10 @@ struct DistrictSettings {
   double spacing_sd_m = 0.5;
   double barrier_m = 25;
   double width_m = 5;
+  double stagger = 0.35;       // every second row of crosscuts is moved by this share of their spacing
   double missing_share = 0.1;  // of the crosscuts but the first and last of a panel
   double stopping_share = 0.1;
+  double stopping_m = 0.4;
 };
 
 /// What a surface's roughness is: self-affine with the Hurst exponent 0.7 below a correlation length.
@@ -85,6 +95,8 @@ struct WearSettings {
   double bedding_m = 0;  // height of the steps where the roof broke to the next bedding plane
   double scallop_m = 0;  // depth of the cutting drum's grooves in the ribs
   double scallop_pitch_m = 0.45;
+  double cleat_m = 0;     // depth of the steps in which ribs break along the coal's two sets of upright joints
+  double cleat_deg = 25;  // bearing of the first set, from x; the second stands at right angles to it
 };
 
 /// What the rock is and what lies on it; reflectivities are diffuse, at 905 nm.
@@ -128,6 +140,7 @@ struct WorldSettings {
   double reflectivity = 0.45;  // diffuse, at 905 nm; rock-dusted
   double reflectivity_sd = 0.06;
   double mesh_edge_m = 0.2;
+  double tile_m = 0;  // side of the squares in which the mine is made, one after the other; 0: in one piece
 };
 Fields fields(WorldSettings& settings);
 
@@ -137,6 +150,12 @@ Fields fields(WorldSettings& settings);
 /// @throws  Error naming the key where no mine can be made: unknown plan, a width <= 0, parts that are not connected,
 ///          entries wider than their spacing, a mesh edge beyond what the widths allow
 World make_world(const WorldSettings& settings, std::uint64_t seed, const Progress& progress = {});
+
+/// The same mine part by part, each a tile of world.tile_m, in memory that does not grow with the mine but for its truth.
+/// @param take  gets each part once it is made
+/// @return      the mine without its mesh
+World make_parts(const WorldSettings& settings, std::uint64_t seed, const std::function<void(MinePart&&)>& take,
+                 const Progress& progress = {});
 
 /// How a vehicle goes through a mine: the keys of [route].
 struct RouteSettings {
@@ -182,9 +201,47 @@ struct WorldCheck {
 };
 WorldCheck check_world(const World& world);
 
+/// What a mesh tells of itself that its mine's truth tells as well.
+struct MeshTally {
+  double six_volumes = 0;         // seen from a point that is the same for all faces
+  int passages = 0, pillars = 0;  // one more than the highest id that a face names
+  size_t nameless = 0;            // faces that name no passage, floor and roof none as their part
+
+  void add(const Mesh& mesh, const Vec3& origin);
+};
+
+/// The same checks part by part: what they hold are the sides that wait for a neighbour and faces near parts to come.
+class PartsCheck {
+ public:
+  void add(const MinePart& part) { add(part.mesh, part.vertex_id, part.index, part.later); }
+  void add(const Mesh& mesh, const std::vector<std::uint32_t>& vertex_id, size_t index,
+           const std::vector<MinePart::Frame>& later);
+  /// Once all parts are in.
+  WorldCheck finish() const;
+  const MeshTally& tally() const { return tally_; }
+
+ private:
+  struct Waiting {  // faces of an earlier part that a later one may touch
+    Mesh mesh;
+    std::vector<std::uint32_t> vertex_id;
+  };
+  void check_joints(const Mesh& mesh, const std::vector<std::uint32_t>& vertex_id);
+  void check_crossings(const Mesh& mesh, const std::vector<std::uint32_t>& vertex_id, size_t index,
+                       const std::vector<MinePart::Frame>& later);
+
+  WorldCheck check_;
+  MeshTally tally_;
+  size_t faces_ = 0;
+  Vec3 origin_ = Vec3::Zero();
+  std::map<std::uint64_t, bool> open_;              // sides, lower and higher vertex: whether their face runs upwards
+  std::map<std::uint32_t, int> fans_;               // of the vertices at open sides
+  std::map<size_t, std::vector<Waiting>> waiting_;  // by the part that they wait for
+};
+
 /// Where a mine's truth does not fit its mesh, a sentence each: volumes, areas, labels, ids, loops, every number that
 /// the mesh tells as well. Empty = it fits.
 std::vector<std::string> check_truth(const World& world);
+std::vector<std::string> check_truth(const World& truth, const MeshTally& mesh);
 
 /// The plan for other programs: DIR/plan.svg, plan.dxf (R12, metres, a layer each for void, pillars, centre lines,
 /// junctions), plan.geojson (metres; what world.plan reads again) and the occupancy grid plan.pgm, plan.yaml (ROS

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
 #include "base/files.h"
+#include "rays/caster.h"
 #include "worlds/plan.h"
 #include "worlds/worlds.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <numeric>
 
 namespace adit {
@@ -36,6 +39,7 @@ WorldSettings retreat() {
   s.panel.crosscut_spacing_m = 24;
   s.panel.spacing_sd_m = 0.3;
   s.panel.retreat_rows = 1;
+  s.panel.stagger = 0;
   return s;
 }
 
@@ -108,7 +112,7 @@ TEST(Layouts, AStoppingClosesACrosscutWithTwoCaps) {
   s.panel.stopping_share = 1;
   s.panel.stub_share = 0;
   const MinePlan plan = make_plan(s, 1);
-  EXPECT_EQ(std::accumulate(plan.cut.begin(), plan.cut.end(), 0), 4);  // of the two crosscuts in the middle
+  EXPECT_EQ(plan.walls.size(), 2u);  // of the two crosscuts in the middle
   const World world = make_world(s, 1);
   EXPECT_EQ(world.numbers.loops, 1);
   double cap = 0;
@@ -116,6 +120,50 @@ TEST(Layouts, AStoppingClosesACrosscutWithTwoCaps) {
     if (world.mesh.label[f] == Label::cap) cap += world.mesh.area(f);
   EXPECT_GT(cap, 4 * (3.7 - 1.4 - 0.8) * 1.9);  // less the round corners of the faces and a column more or less
   EXPECT_LT(cap, 4 * (3.7 + 0.8) * 1.9);
+}
+
+// From the middle of one side through the wall to the other: what is left of the way between the two dead ends' nodes.
+TEST(Layouts, AStoppingIsAsThickAsAsked) {
+  for (double thick : {0.3, 0.5, 1.2}) {
+    WorldSettings s = panel();
+    s.mesh_edge_m = 0.3;
+    s.panel.stopping_share = 1;
+    s.panel.stopping_m = thick;
+    s.panel.stub_share = 0;
+    const MinePlan plan = make_plan(s, 2);
+    const World world = make_world(s, 2);
+    EXPECT_TRUE(check_world(world).ok()) << check_world(world).what();
+    const Caster caster(world.mesh);
+    for (const PlanWall& w : plan.walls) {
+      const Vec3 a = world.junctions[w.a].p_W, b = world.junctions[w.b].p_W, ahead = (b - a).normalized();
+      for (double up : {0.5, 1.0, 1.4}) {
+        const Vec3 off(0, 0, up);
+        const double from_a = caster.nearest({a + off, ahead, 50}).range_m;
+        const double from_b = caster.nearest({b + off, -ahead, 50}).range_m;
+        // A wall has a tenth of the ribs' roughness of 55 mm to either side.
+        EXPECT_NEAR((b - a).norm() - from_a - from_b, thick, 0.05);
+        EXPECT_NEAR(from_a, 1, 0.15);  // centre lines wander, some per cent longer or shorter
+      }
+    }
+  }
+}
+
+TEST(Layouts, PanelsTurnOffSubMainsBetweenBarrierPillars) {
+  WorldSettings s = district(1500);
+  s.district.submain_entries = 2;
+  s.district.submain_panels = 2;
+  s.district.missing_share = s.district.stopping_share = 0;
+  const MinePlan plan = make_plan(s, 3);
+  // No passage leads across another where the layout has no junction: crossings would have become nodes of four ways.
+  std::vector<int> degree(plan.nodes.size(), 0);
+  for (const PlanPassage& p : plan.passages) ++degree[p.a], ++degree[p.b];
+  const auto four = std::count_if(degree.begin(), degree.end(), [](int d) { return d >= 4; });
+  EXPECT_LT(4 * four, static_cast<long>(degree.size()));
+  const World world = make_world(s, 3);
+  EXPECT_TRUE(check_world(world).ok()) << check_world(world).what();
+  EXPECT_EQ(world.pillars.size(), static_cast<size_t>(world.numbers.loops));
+  s.district.submain_entries = 1;
+  EXPECT_NE(error_of([&] { make_plan(s, 1); }).find("world.district.submain_entries = 1"), std::string::npos);
 }
 
 TEST(Layouts, ADistrictIsAsLongAsAskedUpToAPitch) {
@@ -127,6 +175,16 @@ TEST(Layouts, ADistrictIsAsLongAsAskedUpToAPitch) {
     EXPECT_GT(length_of(plan), before);
     before = length_of(plan);
   }
+}
+
+TEST(Layouts, EntriesWiderThanThePillarsAllowAreRefusedWithTheRange) {
+  WorldSettings s = panel();
+  s.panel.width_m = 11.9;
+  s.panel.entry_spacing_m = 14;
+  EXPECT_NE(error_of([&] { make_plan(s, 1); }).find("world.panel.width_m = 11.90 m"), std::string::npos);
+  s = district(1000);
+  s.district.panel_spacing_m = 8;
+  EXPECT_NE(error_of([&] { make_plan(s, 1); }).find("world.district.width_m = 5.00 m"), std::string::npos);
 }
 
 TEST(Layouts, RoomsThatLeaveNoPillarsAreRefusedWithTheRange) {
@@ -190,6 +248,33 @@ TEST(Wear, SpalledRibsStandBackUnderTheRoofAndTheMeshStaysSound) {
     if (before.mesh.label[f] == Label::rib && before.mesh.normal(f).z() > 0.4) brow_before += before.mesh.area(f);
   EXPECT_GT(brow, 0.1 * rib);
   EXPECT_GT(brow, 3 * brow_before);
+}
+
+// The share of the ribs whose faces stand within 12 degrees of one of the two sets of joints.
+TEST(Wear, CleatBreaksRibsAlongTwoSetsOfJointsWhateverWayTheyRun) {
+  WorldSettings s = panel();
+  s.mesh_edge_m = 0.2;
+  s.panel.crosscuts = 2;
+  s.rib.rms_m = 0.01;
+  const auto along_joints = [](const Mesh& mesh, double bearing) {
+    double along = 0, all = 0;
+    for (size_t f = 0; f < mesh.face.size(); ++f) {
+      if (mesh.label[f] != Label::rib) continue;
+      const Vec3 n = mesh.normal(f);
+      const double off = std::remainder(std::atan2(n.y(), n.x()) - bearing, std::numbers::pi / 2);
+      all += mesh.area(f);
+      if (std::abs(off) < 12 * std::numbers::pi / 180) along += mesh.area(f);
+    }
+    return along / all;
+  };
+  const double bearing = 35 * std::numbers::pi / 180;  // entries run at 35 degrees to the joints, crosscuts too
+  const double without = along_joints(make_world(s, 5).mesh, bearing);
+  s.wear.cleat_m = 0.25;
+  s.wear.cleat_deg = 35;
+  const World world = make_world(s, 5);
+  EXPECT_TRUE(check_world(world).ok()) << check_world(world).what();
+  EXPECT_LT(without, 0.1);
+  EXPECT_GT(along_joints(world.mesh, bearing), 0.25);  // edges of 0.2 m blur the steps' corners
 }
 
 TEST(Rocks, DustAndWaterCoverTheShareThatIsAsked) {

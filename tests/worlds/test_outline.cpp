@@ -20,7 +20,17 @@ Drift straight(const Vec2& a, const Vec2& b, double width, bool flat_a, bool fla
   return d;
 }
 
-double area_of(const Outline& o) {
+struct Traced {
+  std::vector<Loop> loops;
+  Outline whole;
+};
+
+Traced outline_of(std::vector<Drift> drifts, double corner_radius_m) {
+  const Workings workings(std::move(drifts), {}, corner_radius_m);
+  return {workings.ribs(), workings.whole()};
+}
+
+double area_of(const Traced& o) {
   double area = 0;
   for (const Loop& loop : o.loops) area += enclosed_area(loop);
   return area;
@@ -30,7 +40,7 @@ double area_of(const Outline& o) {
 constexpr double line_error_m = 0.005;
 
 TEST(Outline, AStraightPassageIsAsWideAsItIsDriven) {
-  const Outline o = outline_of({straight({0, 0}, {40, 0}, 4, true, true)}, 1.2);
+  const Traced o = outline_of({straight({0, 0}, {40, 0}, 4, true, true)}, 1.2);
   ASSERT_EQ(o.loops.size(), 1u);
   int seen = 0;
   for (const Vec2& p : o.loops[0]) {
@@ -42,7 +52,7 @@ TEST(Outline, AStraightPassageIsAsWideAsItIsDriven) {
 }
 
 TEST(Outline, ADeadEndClosesOneMetreBehindItsNode) {
-  const Outline o = outline_of({straight({0, 0}, {40, 0}, 4, true, true)}, 1.2);
+  const Traced o = outline_of({straight({0, 0}, {40, 0}, 4, true, true)}, 1.2);
   double east = -1e9, west = 1e9;
   for (const Vec2& p : o.loops[0]) {
     east = std::max(east, p.x());
@@ -55,8 +65,8 @@ TEST(Outline, ADeadEndClosesOneMetreBehindItsNode) {
 TEST(Outline, AtACrossingTheRockIsRoundedByTheRadiusAskedFor) {
   const double r = 1.2;
   const auto arm = [](double x, double y) { return straight({0, 0}, {x, y}, 4, false, true); };
-  const Outline rounded = outline_of({arm(30, 0), arm(-30, 0), arm(0, 30), arm(0, -30)}, r);
-  const Outline sharp = outline_of({arm(30, 0), arm(-30, 0), arm(0, 30), arm(0, -30)}, 0.5);
+  const Traced rounded = outline_of({arm(30, 0), arm(-30, 0), arm(0, 30), arm(0, -30)}, r);
+  const Traced sharp = outline_of({arm(30, 0), arm(-30, 0), arm(0, 30), arm(0, -30)}, 0.5);
   // Four corners, each a square of the radius less a quarter of a disc.
   const double more = 4 * (1 - std::numbers::pi / 4) * (r * r - 0.25);
   // The lattice cuts the eroded corners by some centimetres over a metre and a half: 8 corners.
@@ -67,7 +77,7 @@ TEST(Outline, ARingHasOnePillarOfTheRightSize) {
   std::vector<Drift> ring;
   const Vec2 c[4] = {{0, 0}, {20, 0}, {20, 30}, {0, 30}};
   for (int k = 0; k < 4; ++k) ring.push_back(straight(c[k], c[(k + 1) % 4], 4, false, false));
-  const Outline o = outline_of(ring, 1.2);
+  const Traced o = outline_of(ring, 1.2);
   ASSERT_EQ(o.loops.size(), 2u);
   EXPECT_GT(enclosed_area(o.loops[0]), 0);
   const double pillar = 16 * 26 - 4 * (1 - std::numbers::pi / 4) * 1.44;
@@ -75,10 +85,54 @@ TEST(Outline, ARingHasOnePillarOfTheRightSize) {
 }
 
 TEST(Outline, EveryPlaceInTheVoidKnowsItsPassage) {
-  const Outline o =
+  const Traced o =
       outline_of({straight({0, 0}, {30, 0}, 4, true, false), straight({30, 0}, {30, 20}, 4, false, true)}, 1.2);
-  EXPECT_EQ(passage_at(o, {10, 1.5}), 0);
-  EXPECT_EQ(passage_at(o, {31, 15}), 1);
+  EXPECT_EQ(passage_at(o.whole, {10, 1.5}), 0);
+  EXPECT_EQ(passage_at(o.whole, {31, 15}), 1);
+}
+
+// A long entry lies in several blocks: what is traced block by block is what the whole lattice shows, to the bit.
+TEST(Outline, BlocksAndWindowsShowTheSameAsTheWhole) {
+  const double r = 1.2;
+  const Workings workings({straight({0, 0}, {150, 10}, 4, true, false), straight({150, 10}, {240, 60}, 5, false, true),
+                           straight({150, 10}, {170, -40}, 3, false, true)},
+                          {}, r);
+  const Outline whole = workings.whole();
+  const std::vector<Loop> expected = contours(whole.depth, 0);
+  const std::vector<Loop> ribs = workings.ribs();
+  ASSERT_EQ(ribs.size(), expected.size());
+  for (size_t l = 0; l < ribs.size(); ++l) {
+    ASSERT_EQ(ribs[l].size(), expected[l].size());
+    for (size_t i = 0; i < ribs[l].size(); ++i) ASSERT_EQ(ribs[l][i], expected[l][i]);
+  }
+  const Outline window = workings.window({{140, -20}, {180, 30}});
+  ASSERT_LT(window.depth.value.size(), whole.depth.value.size() / 2);
+  for (double x = 137.5; x < 183; x += 0.37) {
+    for (double y = -22.5; y < 33; y += 0.41) {
+      ASSERT_EQ(window.depth.at({x, y}), whole.depth.at({x, y})) << x << ", " << y;
+      ASSERT_EQ(passage_at(window, {x, y}), passage_at(whole, {x, y})) << x << ", " << y;
+    }
+  }
+}
+
+TEST(Outline, AThinWallPartsTheVoidAndIsAsThickAsItIsBuilt) {
+  for (double angle : {0.0, 0.3, 0.785}) {
+    const Vec2 along(std::cos(angle), std::sin(angle));
+    Drift d = straight(-20 * along, 20 * along, 4, true, true);
+    // The wall is across the middle; the ribs end in round corners 20 m away and more.
+    const Workings workings({d, straight(20 * along, 20 * along + Vec2(0, 30), 4, false, true),
+                             straight(20 * along + Vec2(0, 30), -20 * along + Vec2(0, 30), 4, false, false),
+                             straight(-20 * along + Vec2(0, 30), -20 * along, 4, false, false)},
+                            {{Vec2::Zero(), along, 0.3, 5.6}}, 1.2);
+    const Lattice depth = workings.whole().depth;
+    for (double across : {-1.5, -0.7, 0.0, 1.0, 1.6}) {
+      const Vec2 off = across * Vec2(-along.y(), along.x());
+      EXPECT_GT(depth.at(off), 0.05) << angle;  // rock in the middle of it
+      EXPECT_LT(depth.at(off + 0.35 * along), -0.1) << angle;
+      EXPECT_NEAR(depth.at(off + 0.15 * along), 0, 0.06) << angle;  // bilinear across the ridge of a distance
+    }
+    EXPECT_EQ(workings.ribs().size(), 1u) << angle;  // a ring that is parted has one rim
+  }
 }
 
 }  // namespace

@@ -162,5 +162,23 @@ TEST(Panel, EntriesWiderThanTheirSpacingAllowsAreRefusedWithTheRange) {
   EXPECT_NE(error_of(s).find("must be above 0"), std::string::npos) << error_of(s);
 }
 
+// Two entries whose centre lines are 4 m apart and that are 5 m wide leave no rock between.
+TEST(Plan, PassagesThatRunIntoOneAnotherAreRefusedWithThePlace) {
+  WorldSettings s = with_plan("overlap", R"({"nodes": [{"id": 1, "x_m": 0, "y_m": 0}, {"id": 2, "x_m": 60, "y_m": 0},
+      {"id": 3, "x_m": 60, "y_m": 4}, {"id": 4, "x_m": 0, "y_m": 4}],
+      "edges": [{"a": 1, "b": 2, "width_m": 5}, {"a": 2, "b": 3, "width_m": 5}, {"a": 3, "b": 4, "width_m": 5},
+                {"a": 4, "b": 1, "width_m": 5}]})");
+  s.mesh_edge_m = 0.5;
+  try {
+    make_world(s, 1);
+    FAIL() << "no error";
+  } catch (const Error& e) {
+    const std::string what = e.what();
+    EXPECT_NE(what.find("the centre lines have 1 loops, but 0 pillars would be left"), std::string::npos) << what;
+    EXPECT_NE(what.find("world.width_scale = 1.00"), std::string::npos) << what;
+    EXPECT_NE(what.find(" near ("), std::string::npos) << what;
+  }
+}
+
 }  // namespace
 }  // namespace adit

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "worlds/stats.h"
+
+#include "rays/caster.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit {
+namespace {
+
+// Mean of what a look from the middle of the passage finds to either side of it, away from its junctions.
+struct Looks {
+  double width = 0, height = 0, n = 0;
+};
+
+Looks look_along(const Caster& caster, const Passage& p) {
+  Looks looks;
+  const double clear_m = 0.5 * p.width_m + 2.5;
+  double behind = 0;
+  for (size_t i = 1; i + 1 < p.centre_line.size(); ++i) {
+    behind += (p.centre_line[i] - p.centre_line[i - 1]).head<2>().norm();
+    if (behind < clear_m || p.length_m - behind < clear_m) continue;
+    const Vec2 along = (p.centre_line[i + 1] - p.centre_line[i - 1]).head<2>().normalized();
+    const Vec3 eye = p.centre_line[i] + Vec3(0, 0, 0.5 * p.height_m), left(-along.y(), along.x(), 0), up(0, 0, 1);
+    const auto span = [&](const Vec3& way) {
+      return caster.nearest({eye, way, 50}).range_m + caster.nearest({eye, -way, 50}).range_m;
+    };
+    const double width = span(left), height = span(up);
+    if (!std::isfinite(width) || !std::isfinite(height)) continue;
+    looks.width += width;
+    looks.height += height;
+    ++looks.n;
+  }
+  return looks;
+}
+
+}  // namespace
+
+void measure(const World& world, MineSamples& samples) {
+  const Caster caster(world.mesh);
+  for (const Passage& p : world.passages) {
+    samples.length_m.push_back(p.length_m);
+    const Vec3 way = p.centre_line.back() - p.centre_line.front();
+    if (p.length_m > 5) samples.grade_percent.push_back(100 * std::abs(way.z()) / p.length_m);
+    const Looks looks = look_along(caster, p);
+    if (looks.n == 0) continue;
+    samples.width_m.push_back(looks.width / looks.n);
+    samples.height_m.push_back(looks.height / looks.n);
+  }
+  for (const Junction& j : world.junctions) ++samples.junctions[j.degree()];
+  for (const Pillar& p : world.pillars) samples.pillar_m2.push_back(p.area_m2);
+  samples.extraction.push_back(world.numbers.extraction_ratio);
+}
+
+Spread spread_of(std::vector<double> values) {
+  Spread s;
+  s.n = values.size();
+  if (values.empty()) return s;
+  std::sort(values.begin(), values.end());
+  for (double v : values) s.mean += v / static_cast<double>(s.n);
+  for (double v : values) s.sd += (v - s.mean) * (v - s.mean);
+  s.sd = s.n > 1 ? std::sqrt(s.sd / static_cast<double>(s.n - 1)) : 0;
+  const auto at = [&](double share) { return values[static_cast<size_t>(share * static_cast<double>(s.n - 1) + 0.5)]; };
+  s.p5 = at(0.05);
+  s.p50 = at(0.5);
+  s.p95 = at(0.95);
+  return s;
+}
+
+}  // namespace adit

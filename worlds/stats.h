@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/world.h"
+
+#include <map>
+#include <vector>
+
+namespace adit {
+
+/// What mines measure, passage by passage: by rays within their meshes, not by their truth.
+struct MineSamples {
+  std::vector<double> width_m, height_m;        // (passages) means over places away from the junctions
+  std::vector<double> grade_percent, length_m;  // (passages) of the line from end to end; along the centre line
+  std::vector<double> pillar_m2, extraction;    // (pillars), (mines)
+  std::map<int, int> junctions;                 // how many of each degree
+};
+
+/// Adds a mine's.
+void measure(const World& world, MineSamples& samples);
+
+struct Spread {
+  size_t n = 0;
+  double mean = 0, sd = 0, p5 = 0, p50 = 0, p95 = 0;
+};
+Spread spread_of(std::vector<double> values);
+
+}  // namespace adit
