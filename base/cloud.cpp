@@ -172,6 +172,12 @@ PointCloud read_pcd(const std::string& file) {
   return header.binary ? read_binary(file, text, header) : read_ascii(file, text, header);
 }
 
+PointCloud read_cloud(const std::string& file) {
+  PointCloud points = file.ends_with(".pcd") ? read_pcd(file) : read_points(file);
+  if (points.size() == 0) throw Error(file + ": no point in it");
+  return points;
+}
+
 namespace {
 
 std::string frame_name(size_t n) {

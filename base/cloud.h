@@ -27,6 +27,9 @@ void write_pcd(const std::string& file, const PointCloud& points);
 /// PCD, ascii or binary (not binary_compressed), any fields beside x, y, z of 4 or 8 bytes. Errors name file and cause.
 PointCloud read_pcd(const std::string& file);
 
+/// Points of any file that adit reads: .pcd, else PLY. A file without points is an Error.
+PointCloud read_cloud(const std::string& file);
+
 /// A folder in the layout of SemanticKITTI: velodyne/NNNNNN.bin (float x y z remission) and labels/NNNNNN.label (uint32:
 /// label, and part + 1 in the upper 16 bits) for every scan of the horizontal laser, with what all lasers of the rig
 /// measured until its next one, in B at that scan; poses.txt (3 x 4 rows of X_WB), times.txt, calib.txt (Tr = identity).

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/path_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -190,12 +191,14 @@ void save_estimate(const std::string& dir, const Estimate& e) {
   save_planar(dir + "/open_loop.tum", e.path.stamp_s, e.open_loop);
   save_planar(dir + "/planar.tum", e.path.stamp_s, e.planar);
   std::error_code absent;
-  for (const char* file : {"/grid.pgm", "/grid.yaml", "/points.ply", "/surface.ply", "/graph.g2o"})
+  for (const char* file :
+       {"/grid.pgm", "/grid.yaml", "/points.ply", "/surface.ply", "/graph.g2o", "/path_covariance.txt"})
     fs::remove(dir + file, absent);
   if (!e.grid.log_odds.empty()) write_grid(dir + "/grid.pgm", e.grid);
   if (e.points.size() > 0) write_points(dir + "/points.ply", e.points);
   if (!e.surface.face.empty()) write_mesh(dir + "/surface.ply", e.surface);
   if (e.graph) write_g2o(dir + "/graph.g2o", e.graph->graph, e.graph->id);
+  if (!e.covariance.empty()) write_covariances(dir + "/path_covariance.txt", e.path, e.covariance);
   write_text(dir + "/map.json", map_text(e));
 }
 
@@ -205,6 +208,7 @@ Estimate load_estimate(const std::string& dir) {
   e.path = read_tum(dir + "/trajectory.tum");
   e.open_loop = load_planar(dir + "/open_loop.tum", e.path.size());
   e.planar = load_planar(dir + "/planar.tum", e.path.size());
+  if (fs::exists(dir + "/path_covariance.txt")) e.covariance = read_covariances(dir + "/path_covariance.txt", e.path);
   if (fs::exists(dir + "/grid.yaml")) e.grid = read_grid(dir + "/grid.yaml");
   if (fs::exists(dir + "/points.ply")) e.points = read_points(dir + "/points.ply");
   if (fs::exists(dir + "/surface.ply")) e.surface = read_mesh(dir + "/surface.ply");

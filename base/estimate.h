@@ -38,9 +38,10 @@ struct DegenerateStretch {
 /// What a mapper says, in M (the frame of the first pose of the mapping laser's body).
 struct Estimate {
   std::string method;
-  Trajectory path;               // X_MB at each scan of the mapping laser, six degrees of freedom
-  std::vector<Pose2> open_loop;  // (path) scan matching alone, in the plane
-  std::vector<Pose2> planar;     // (path) after the global alignment
+  Trajectory path;                          // X_MB at each scan of the mapping laser, six degrees of freedom
+  std::vector<Eigen::MatrixXd> covariance;  // (path) or empty: 3 x 3 or 6 x 6, as base/path_file.h has them
+  std::vector<Pose2> open_loop;             // (path) scan matching alone, in the plane
+  std::vector<Pose2> planar;                // (path) after the global alignment
   std::vector<AlignmentRound> rounds;
   bool converged = false;  // the correspondences repeated
   std::vector<Closure> closures;
@@ -54,7 +55,8 @@ struct Estimate {
   std::vector<std::string> notes;  // what was dropped or could not be done, one sentence each
 };
 
-/// DIR/trajectory.tum open_loop.tum planar.tum grid.pgm grid.yaml points.ply surface.ply graph.g2o map.json. What the estimate
+/// DIR/trajectory.tum open_loop.tum planar.tum path_covariance.txt grid.pgm grid.yaml points.ply surface.ply graph.g2o
+/// map.json. What the estimate
 /// lacks has no file. map.json comes last: a folder that holds it is whole.
 void save_estimate(const std::string& dir, const Estimate& estimate);
 /// The same; the grid's cells come back as free, occupied or unknown. A missing or foreign file is an Error.

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/files.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
@@ -31,7 +32,7 @@ struct Picture {
   std::vector<std::uint8_t> grey;  // (height x width), top row first
 };
 
-// Binary portable graymap, one byte a pixel.
+// Portable graymap, binary (P5, one byte a pixel) or in words (P2).
 Picture read_pgm(const std::string& file) {
   const std::string text = read_text(file);
   size_t at = 2;
@@ -44,15 +45,20 @@ Picture read_pgm(const std::string& file) {
     int value = 0, digits = 0;
     for (; at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) && digits < 9; ++at, ++digits)
       value = value * 10 + (text[at] - '0');
-    if (digits == 0) throw Error(file + ": no valid picture; a binary PGM (P5) is needed");
+    if (digits == 0) throw Error(file + ": no valid picture; a PGM (P5 or P2) is needed");
     return value;
   };
-  if (text.compare(0, 2, "P5") != 0) throw Error(file + ": no binary PGM (P5)");
+  const bool words = text.compare(0, 2, "P2") == 0;
+  if (!words && text.compare(0, 2, "P5") != 0) throw Error(file + ": no PGM (P5 or P2)");
   Picture p;
   p.width = number(), p.height = number(), p.most = number();
   ++at;  // one blank ends the header
   const size_t size = static_cast<size_t>(p.width) * static_cast<size_t>(p.height);
   if (size == 0 || p.most < 1 || p.most > 255) throw Error(file + ": empty picture, or more than one byte a pixel");
+  if (words) {
+    for (size_t k = 0; k < size; ++k) p.grey.push_back(static_cast<std::uint8_t>(std::min(number(), p.most)));
+    return p;
+  }
   if (text.size() < at + size)
     throw Error(file + ": cut off: " + std::to_string(text.size() - std::min(at, text.size())) + " of " +
                 std::to_string(size) + " pixels are there");
@@ -65,11 +71,16 @@ class MapYaml {
  public:
   explicit MapYaml(const std::string& file) : file_(file) {
     std::istringstream in(read_text(file));
-    std::string line;
+    std::string line, last;
     while (std::getline(in, line)) {
       line = line.substr(0, line.find('#'));
       const size_t colon = line.find(':');
-      if (colon != std::string::npos) value_[trimmed(line.substr(0, colon))] = trimmed(line.substr(colon + 1));
+      if (colon != std::string::npos) {
+        last = trimmed(line.substr(0, colon));
+        value_[last] = trimmed(line.substr(colon + 1));
+      } else if (const size_t dash = line.find("- "); dash != std::string::npos && !last.empty()) {
+        value_[last] += " " + trimmed(line.substr(dash + 2)) + ",";  // a list, one entry a line
+      }
     }
   }
   std::string text(const std::string& key) const {
@@ -135,6 +146,9 @@ void write_grid(const std::string& pgm_file, const Grid& grid) {
 }
 
 Grid read_grid(const std::string& yaml_file) {
+  if (yaml_file.ends_with(".pgm") || yaml_file.ends_with(".png"))
+    throw Error(yaml_file +
+                ": a picture tells neither its scale nor its place; name the yaml of ROS map_server beside it");
   const MapYaml yaml(yaml_file);
   const fs::path image(yaml.text("image"));
   const Picture p =

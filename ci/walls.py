@@ -30,6 +30,7 @@ HOMES = {
     r"tiny_gltf": ["base/mesh_glb.cpp"],
     r"tbb/|oneapi/": ["base/parallel.cpp"],
     r"CLI/": ["cli/main.cpp"],
+    r"spawn\.h|fcntl\.h": ["cli/external.cpp"],
     r"cholmod|suitesparse/": ["mapper/sparse_solve.cpp"],
 }
 # Libraries that any .cpp may use, and no header.

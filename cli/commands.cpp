@@ -101,9 +101,13 @@ int run_command(const std::string& scenario, const Common& common, Console& cons
   Stages stages(out_of(common, s.name), console);
   const World world = stages.world(s);
   const Stages::Driven driven = stages.drive(s, world);
-  const Estimate estimate = stages.map(s.map, driven.recording.log);
-  const Score score = stages.score(s.score, world, driven.recording.truth, driven.recording.log.rig, estimate);
-  stages.report(s, world, driven.recording, estimate, score);
+  const std::optional<Estimate> estimate = stages.map(s, driven.recording.log);
+  if (!estimate) {
+    stages.save_timing();
+    return 1;
+  }
+  const Score score = stages.score(s.score, world, driven.recording.truth, driven.recording.log.rig, *estimate);
+  stages.report(s, world, driven.recording, *estimate, score);
   stages.save_timing();
   console.result(s.name + ", seed " + std::to_string(s.seed));
   print_scores(score, console);
@@ -187,11 +191,13 @@ int map_command(const std::string& recording, const Common& common, Console& con
   Scenario s;
   for (const std::string& a : common.assignments) set_field(fields(s), a);
   Stages stages(out_of(common, fs::path(recording).stem().string()), console);
+  bool mapped = true;
   if (const std::string ending = fs::path(recording).extension().string(); ending == ".g2o" || ending == ".graph")
     print_graph(stages.map(s.map, read_g2o(recording)), console);
   else
-    stages.map(s.map, load_any_log(recording));
+    mapped = stages.map(s, load_any_log(recording)).has_value();
   stages.save_timing();
+  if (!mapped) return 1;
   console.result("map: " + stages.out() + "/map");
   if (console.wants_json())
     console.json(ordered_json{{"out", stages.out()}, {"map", json_of_file(stages.out() + "/map/map.json")}}.dump());
@@ -201,7 +207,7 @@ int map_command(const std::string& recording, const Common& common, Console& con
 int compare_command(const std::vector<std::string>& outs, const Common& common, Console& console) {
   std::vector<ScoredRun> runs;
   for (const std::string& out : outs) runs.push_back(scored_run(out));
-  const Comparison comparison = compare_runs(runs);
+  const Comparison comparison = compare_runs(runs, headline_metrics());
   console.result(comparison_table(comparison, headline_metrics()));
   const std::string file = (common.out.empty() ? "." : common.out) + "/comparison.json";
   write_comparison(file, comparison);

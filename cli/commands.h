@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/console.h"
+#include "cli/parts.h"
 
 #include <string>
 #include <vector>
@@ -19,10 +20,9 @@ struct Common {
 struct ScoreInput {
   std::string world, truth;  // folder of the mine, truth.h5
   std::string map;           // a folder as `adit map` writes it, or any of:
-  std::string trajectory, points, grid, surface;
-  double volume_m3 = -1;  // -1: not given
-  std::string laser;      // whose path the trajectory is; empty: the body's
+  EstimateParts parts;
   std::string relations;  // instead of world and truth, for a real log
+  std::string evo;        // archive of the path's errors that evo_res opens
   std::string explain;    // a metric's name, instead of all
 };
 

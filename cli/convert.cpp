@@ -118,6 +118,12 @@ Log load_any_log(const std::string& file) {
   return ending == ".log" || ending == ".clf" ? read_carmen(file).log : load_log(file);
 }
 
+void write_any_log(const std::string& file, const Log& log) {
+  Content c;
+  c.log = log;
+  write_content(c, "a log alone", file, 1);
+}
+
 int convert_command(const std::string& from, const std::string& to, const std::string& truth_file, int every,
                     Console& console) {
   format_of(to);  // a bad name is said before a long read

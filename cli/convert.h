@@ -11,6 +11,9 @@ namespace adit {
 /// The log in a file of any format that holds one: .h5 of ours, .log and .clf of CARMEN.
 Log load_any_log(const std::string& file);
 
+/// A log alone, in the format that the name says. Error for a format that needs the truth.
+void write_any_log(const std::string& file, const Log& log);
+
 /// Writes what `from` holds in the format that the name of `to` says; docs/sensors.md has the table.
 /// @param truth_file  of the recording; empty: truth.h5 beside `from`, where there is one
 /// @param every       of clouds: every so many scans

@@ -58,15 +58,21 @@ int dispatch(CLI::App& app, const Words& w) {
 void add_score(CLI::App& app, Words& w) {
   CLI::App* score = app.add_subcommand("score", "a map against the truth, ours or anybody's");
   score->add_option("--world", w.score.world, "folder of the mine");
-  score->add_option("--truth", w.score.truth, "truth.h5 of the recording");
+  score->add_option("--truth", w.score.truth,
+                    "truth.h5 of the recording; without --world a reference path, as --trajectory");
   score->add_option("--map", w.score.map, "folder of a map as 'adit map' writes it");
-  score->add_option("--trajectory", w.score.trajectory, "somebody's path: TUM, or 't x y yaw' a line");
-  score->add_option("--laser", w.score.laser, "the path is that of this laser of the rig, not of the vehicle's body");
-  score->add_option("--points", w.score.points, "with it, its points: PLY");
-  score->add_option("--grid", w.score.grid, "its occupancy grid: the yaml of ROS map_server");
-  score->add_option("--surface", w.score.surface, "its closed surface: PLY");
-  score->add_option("--volume", w.score.volume_m3, "its own word on the volume, m3")->check(CLI::NonNegativeNumber);
+  score->add_option("--trajectory", w.score.parts.trajectory, "somebody's path: TUM, 't x y yaw' a line, or KITTI");
+  score->add_option("--stamps", w.score.parts.stamps, "of a KITTI path: one a line; else those of the laser's scans");
+  score->add_option("--covariance", w.score.parts.covariance, "of its poses: 't' and 6 or 21 numbers a line");
+  score->add_option("--laser", w.score.parts.laser,
+                    "the path is that of this laser of the rig, not of the vehicle's body");
+  score->add_option("--points", w.score.parts.points, "with it, its points: PLY or PCD");
+  score->add_option("--grid", w.score.parts.grid, "its occupancy grid: the yaml of ROS map_server");
+  score->add_option("--surface", w.score.parts.surface, "its closed surface: PLY or OBJ");
+  score->add_option("--volume", w.score.parts.volume_m3, "its own word on the volume, m3")
+      ->check(CLI::NonNegativeNumber);
   score->add_option("--relations", w.score.relations, "of a real log: 't1 t2 x y z roll pitch yaw' a line");
+  score->add_option("--evo", w.score.evo, "write the path's errors as an archive (zip) that evo_res opens");
   score->add_option("--explain", w.score.explain, "define this metric, as 'adit list metrics' names it");
   add_common(score, w, false);
 }
@@ -90,7 +96,8 @@ void add_commands(CLI::App& app, Words& w) {
   drive->add_option("--world", w.world, "folder of a mine made before");
   add_common(drive, w, true);
   CLI::App* map = app.add_subcommand("map", "a map from a recording alone");
-  map->add_option("recording", w.first, "log.h5, a CARMEN log (.log, .clf), or a pose graph (.g2o, .graph)")->required();
+  map->add_option("recording", w.first, "log.h5, a CARMEN log (.log, .clf), or a pose graph (.g2o, .graph)")
+      ->required();
   add_common(map, w, false);
   add_score(app, w);
   CLI::App* compare = app.add_subcommand("compare", "many runs: medians, intervals, paired differences, failures");

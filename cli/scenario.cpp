@@ -15,6 +15,7 @@ Fields fields(Scenario& s) {
   append(all, "drive", fields(s.drive));
   append(all, "sensors", fields(s.sensors));
   append(all, "map", fields(s.map));
+  append(all, "map.external", fields(s.external));
   append(all, "score", fields(s.score));
   append(all, "report", fields(s.report));
   return all;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/config.h"
+#include "cli/external.h"
 #include "eval/report.h"
 #include "eval/score.h"
 #include "mapper/mapper.h"
@@ -25,6 +26,7 @@ struct Scenario {
   DriveSettings drive;
   SensorSettings sensors;
   MapSettings map;
+  ExternalSettings external;
   ScoreSettings score;
   ReportSettings report;
 };

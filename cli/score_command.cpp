@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
 #include "base/files.h"
+#include "base/path_file.h"
 #include "cli/commands.h"
 #include "cli/scenario.h"
 #include "cli/scores.h"
+#include "eval/evo_archive.h"
 #include "eval/explain.h"
 #include "eval/relations.h"
 
@@ -20,40 +22,24 @@ void need(const std::string& value, const std::string& option) {
   if (value.empty()) throw Error("score: " + option + " is missing; 'adit score --help' shows what goes together");
 }
 
-bool has_parts(const ScoreInput& in) {
-  return !in.trajectory.empty() || !in.laser.empty() || !in.points.empty() || !in.grid.empty() || !in.surface.empty() ||
-         in.volume_m3 >= 0;
-}
-
-// The body's path from that of a laser where its nominal mount puts it; M stays the frame that the path is told in.
-void lay_on_body(Trajectory& path, const Rig& nominal, const std::string& laser) {
-  std::string known;
-  for (const Mount& mount : nominal.mounts) {
-    known += (known.empty() ? "" : ", ") + mount.name;
-    if (mount.name != laser) continue;
-    const Pose X_SB = mount.X_BS.inverse();
-    for (Pose& X : path.X_WB) X = X * X_SB;
-    return;
-  }
-  throw Error("score: --laser " + laser + ": the rig '" + nominal.name + "' has " + known);
+// The rig and the stamps as the mapper had them; without its log those of the truth.
+Log log_beside(const std::string& truth_file, const Truth& truth) {
+  const fs::path file = fs::path(truth_file).parent_path() / "log.h5";
+  if (fs::exists(file)) return load_log(file.string());
+  Log log;
+  log.rig = truth.rig;
+  for (const ScanTruth& scans : truth.scans) log.scans.emplace_back().stamp_s = scans.stamp_s;
+  return log;
 }
 
 // Somebody's result, as far as it was given.
-Estimate estimate_of(const ScoreInput& in, const Rig& nominal) {
+Estimate estimate_of(const ScoreInput& in, const Log* log) {
   if (!in.map.empty()) {
-    if (has_parts(in)) throw Error("score: --map is a whole result; give either it or its parts");
+    if (in.parts.any()) throw Error("score: --map is a whole result; give either it or its parts");
     return load_estimate(in.map);
   }
-  need(in.trajectory, "--map, or --trajectory (a path ties every other part to the truth)");
-  Estimate e;
-  e.method = fs::path(in.trajectory).stem().string();
-  e.path = read_tum(in.trajectory);
-  if (!in.laser.empty()) lay_on_body(e.path, nominal, in.laser);
-  if (!in.points.empty()) e.points = read_points(in.points);
-  if (!in.grid.empty()) e.grid = read_grid(in.grid);
-  if (!in.surface.empty()) e.surface = read_mesh(in.surface);
-  if (in.volume_m3 >= 0) e.volume_m3 = in.volume_m3;
-  return e;
+  need(in.parts.trajectory, "--map, or --trajectory (a path ties every other part to the truth)");
+  return load_parts(in.parts, log);
 }
 
 Score score_world(const ScoreInput& in, const ScoreSettings& settings, Console& console) {
@@ -64,21 +50,35 @@ Score score_world(const ScoreInput& in, const ScoreSettings& settings, Console& 
   if (truth.world != world_hash(world))
     throw Error(in.truth + ": was recorded in another mine than " + in.world + " holds; scores would mean nothing",
                 Fault::not_comparable);
-  const fs::path log = fs::path(in.truth).parent_path() / "log.h5";
-  const Rig nominal = fs::exists(log) ? load_log(log.string()).rig : truth.rig;
-  return score_map(world, truth, nominal, estimate_of(in, nominal), settings, console.progress());
+  const Log log = log_beside(in.truth, truth);
+  return score_map(world, truth, log.rig, estimate_of(in, &log), settings, console.progress());
+}
+
+// A reference path of somebody in place of a mine.
+Score score_reference(const ScoreInput& in, const ScoreSettings& settings) {
+  need(in.parts.trajectory, "--trajectory");
+  if (!in.parts.points.empty() || !in.parts.grid.empty() || !in.parts.surface.empty() || !in.parts.laser.empty())
+    throw Error(
+        "score: points, grids, surfaces and mounts need the mine that they are held against: give --world and its "
+        "truth.h5");
+  const bool shared_stamps = !in.parts.stamps.empty() && is_kitti(in.truth);
+  const Trajectory truth = read_path(in.truth, shared_stamps ? read_stamps(in.parts.stamps) : std::vector<double>{});
+  Score score = score_path(truth, estimate_of(in, nullptr), settings);
+  score.meta.emplace_back("reference", fs::path(in.truth).filename().string());
+  return score;
 }
 
 Score score_real_log(const ScoreInput& in, const ScoreSettings& settings) {
-  need(in.trajectory, "--trajectory");
-  if (!in.world.empty() || !in.truth.empty() || !in.laser.empty())
-    throw Error("score: --relations are the truth of a real log; --world, --truth and --laser do not go with them");
-  return score_relations(read_relations(in.relations), read_tum(in.trajectory), settings.max_diff_s);
+  need(in.parts.trajectory, "--trajectory");
+  if (!in.world.empty() || !in.truth.empty() || !in.parts.laser.empty() || !in.evo.empty())
+    throw Error(
+        "score: --relations are the truth of a real log; --world, --truth, --laser and --evo do not go with them");
+  return score_relations(read_relations(in.relations), load_parts(in.parts, nullptr).path, settings.max_diff_s);
 }
 
 std::string file_of(const ScoreInput& in, const Common& common) {
   if (!common.out.empty()) return common.out + "/score.json";
-  const std::string& beside = in.map.empty() ? in.trajectory : in.map;
+  const std::string& beside = in.map.empty() ? in.parts.trajectory : in.map;
   return (fs::path(beside).parent_path() / "score.json").string();
 }
 
@@ -93,9 +93,14 @@ int score_command(const ScoreInput& in, const Common& common, Console& console) 
   }
   Scenario s;
   for (const std::string& a : common.assignments) set_field(fields(s), a);
-  const Score score = in.relations.empty() ? score_world(in, s.score, console) : score_real_log(in, s.score);
+  const bool no_mine = in.world.empty() && !in.truth.empty() && !in.truth.ends_with(".h5");
+  const Score score = !in.relations.empty() ? score_real_log(in, s.score)
+                      : no_mine             ? score_reference(in, s.score)
+                                            : score_world(in, s.score, console);
   const std::string file = file_of(in, common);
   write_score(file, score);
+  for (const std::string& warning : score.warnings) console.note("warning: " + warning);
+  if (!in.evo.empty()) write_evo_archive(in.evo, score);
   print_scores(score, console);
   console.result("scores: " + file);
   if (console.wants_json()) console.json(nlohmann::ordered_json::parse(read_text(file)).dump());

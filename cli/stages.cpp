@@ -85,7 +85,7 @@ World Stages::world(const Scenario& s) {
     write_text(out_ + "/scenario.toml", resolved_toml(s));
     save_world(out_ + "/world", world);
     save_plan(out_ + "/world", world);
-    forget({"recording", "map", "score.json", "report"});
+    forget({"recording", "map", "external", "score.json", "report"});
   });
   console_.note(summary(world, world.mesh.face.size()));
   return world;
@@ -136,7 +136,7 @@ Stages::Driven Stages::drive(const Scenario& s, const World& world) {
     write_text(out_ + "/scenario.toml", resolved_toml(s));
     save_log(out_ + "/recording/log.h5", driven.recording.log);
     save_truth(out_ + "/recording/truth.h5", driven.recording.truth);
-    forget({"recording/trouble.png", "map", "score.json", "report"});
+    forget({"recording/trouble.png", "map", "external", "score.json", "report"});
     if (driven.exit_code != 0)
       write_png(out_ + "/recording/trouble.png", trouble_picture(world, driven.recording.truth.drive, vehicle.hull));
   });
@@ -150,15 +150,26 @@ Stages::Driven Stages::drive(const Scenario& s, const World& world) {
   return driven;
 }
 
-Estimate Stages::map(const MapSettings& settings, const Log& log) {
-  Estimate estimate;
+std::optional<Estimate> Stages::map(const Scenario& s, const Log& log) {
+  std::optional<Estimate> estimate;
+  std::string failure;
   timed("map", [&] {
-    estimate = make_map(log, settings, console_.progress());
-    save_estimate(out_ + "/map", estimate);
+    if (s.external.command.empty()) {
+      estimate = make_map(log, s.map, console_.progress());
+      forget({"external", "score.json", "report"});
+    } else {
+      ExternalRun run = run_external(s.external, log, s.seed, out_ + "/external", console_.progress());
+      estimate = std::move(run.estimate);
+      failure = std::move(run.failure);
+      forget({"map", "score.json", "report"});
+    }
+    if (!estimate) return;
+    save_estimate(out_ + "/map", *estimate);
     estimate = load_estimate(out_ + "/map");  // judged as its files tell it, so that they can be judged again
-    forget({"score.json", "report"});
   });
-  for (const std::string& n : estimate.notes) console_.note("  " + n);
+  if (!estimate) console_.note("  the mapper '" + s.external.command[0] + "' failed: " + failure);
+  if (estimate)
+    for (const std::string& n : estimate->notes) console_.note("  " + n);
   return estimate;
 }
 

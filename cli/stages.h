@@ -9,6 +9,7 @@
 #include "eval/score.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,8 @@ class Stages {
     int exit_code;  // 1 where the drive ended early
   };
   Driven drive(const Scenario& s, const World& world);
-  Estimate map(const MapSettings& settings, const Log& log);
+  /// By adit's own mapper, or by the command of [map.external]; none where that failed, which is noted.
+  std::optional<Estimate> map(const Scenario& s, const Log& log);
   /// The optimum of a bare pose graph: OUT/map/graph.g2o, covariance.txt and map.json.
   SolvedGraph map(const MapSettings& settings, const GraphFile& graph);
   Score score(const ScoreSettings& settings, const World& world, const Truth& truth, const Rig& nominal,

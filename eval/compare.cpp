@@ -55,8 +55,38 @@ double badness(const Metric& m) {
 
 using Runs = std::map<int, const ScoredRun*>;  // by seed
 
-ComparedMetric::Group group_of(const std::string& name, const Runs& runs, const Runs& first) {
-  ComparedMetric::Group out;
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return values.empty() ? none : sum / static_cast<double>(values.size());
+}
+
+// Mean over deviation: Cohen's d of paired values.
+double effect_of(const std::vector<double>& differences) {
+  const double mean = mean_of(differences);
+  double squares = 0;
+  for (const double d : differences) squares += (d - mean) * (d - mean);
+  const auto n = static_cast<double>(differences.size());
+  return n > 1 && squares > 0 ? mean / std::sqrt(squares / (n - 1)) : none;
+}
+
+// What nobody would act on, whatever the metric.
+double least_relevant(const std::string& unit) {
+  static const std::map<std::string, double> by_unit{{"m", 0.005},     {"deg", 0.05},   {"deg/m", 0.005},
+                                                     {"percent", 0.5}, {"share", 0.01}, {"ratio", 0.01},
+                                                     {"count", 0.5},   {"m3", 1}};
+  const auto found = by_unit.find(unit);
+  return found == by_unit.end() ? 0 : found->second;
+}
+
+struct Paired {
+  ComparedMetric::Group group;
+  std::vector<double> worse;  // by how much each pair is worse than the first group
+};
+
+Paired group_of(const std::string& name, const Runs& runs, const Runs& first) {
+  Paired paired;
+  ComparedMetric::Group& out = paired.group;
   std::vector<double> values, differences;
   double worst = -std::numeric_limits<double>::infinity();
   for (const auto& [seed, run] : runs) {
@@ -71,12 +101,35 @@ ComparedMetric::Group group_of(const std::string& name, const Runs& runs, const 
     const auto pair = first.find(seed);
     const Metric* other =
         &runs != &first && pair != first.end() && pair->second->score ? pair->second->score->find(name) : nullptr;
-    if (other && std::isfinite(other->value)) differences.push_back(m->value - other->value);
+    if (!other || !std::isfinite(other->value)) continue;
+    differences.push_back(m->value - other->value);
+    paired.worse.push_back(badness(*m) - badness(*other));
   }
   if (std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); })) out.worst_seed.reset();
   out.value = spread_of(values);
+  out.mean = mean_of(values);
   out.difference = spread_of(differences);
-  out.p = sign_flip_p(differences);
+  out.effect = effect_of(differences);
+  out.p = sign_flip_p(paired.worse);
+  return paired;
+}
+
+std::string verdict_of(const Paired& paired, double relevant) {
+  const Spread worse = spread_of(paired.worse);
+  if (worse.n == 0) return "unclear";
+  const double p = paired.group.p_holm.value_or(paired.group.p);
+  if (p <= 0.05 && std::abs(worse.median) >= relevant) return worse.median > 0 ? "worse" : "better";
+  const bool all_equal = std::all_of(paired.worse.begin(), paired.worse.end(), [](double d) { return d == 0; });
+  if (all_equal || (std::isfinite(worse.low) && worse.low > -relevant && worse.high < relevant)) return "same";
+  return "unclear";
+}
+
+ComparedMetric compared(const Metric& like, const std::vector<Runs>& groups, std::vector<Paired>& paired) {
+  ComparedMetric out{like.name, like.unit, like.better, 0, {}};
+  paired.clear();
+  for (const Runs& group : groups) paired.push_back(group_of(like.name, group, groups[0]));
+  const double median = paired[0].group.value.median;
+  out.relevant = std::max(least_relevant(like.unit), std::isfinite(median) ? 0.05 * std::abs(median) : 0);
   return out;
 }
 
@@ -103,6 +156,19 @@ Spread spread_of(const std::vector<double>& values) {
   return s;
 }
 
+std::vector<double> holm(const std::vector<double>& p) {
+  std::vector<size_t> order(p.size());
+  for (size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return p[a] < p[b]; });
+  std::vector<double> out(p.size());
+  double most = 0;
+  for (size_t k = 0; k < order.size(); ++k) {
+    most = std::max(most, std::min(1.0, static_cast<double>(p.size() - k) * p[order[k]]));
+    out[order[k]] = most;
+  }
+  return out;
+}
+
 double sign_flip_p(const std::vector<double>& differences) {
   const size_t n = differences.size();
   if (n == 0) return 1;
@@ -124,7 +190,7 @@ double sign_flip_p(const std::vector<double>& differences) {
                : static_cast<double>(as_far + 1) / static_cast<double>(patterns + 1);
 }
 
-Comparison compare_runs(const std::vector<ScoredRun>& runs) {
+Comparison compare_runs(const std::vector<ScoredRun>& runs, const std::vector<std::string>& suite) {
   Comparison out;
   std::vector<std::string> settings;
   std::vector<Runs> groups;
@@ -153,15 +219,29 @@ Comparison compare_runs(const std::vector<ScoredRun>& runs) {
       if (!run->score) out.group[g].failed.push_back(seed);
     }
   std::set<std::string> named;
+  std::vector<std::vector<Paired>> all;  // (metric) (group)
   for (const ScoredRun& run : runs) {
     if (!run.score) continue;
     for (const Metric& m : run.score->metrics) {
       if (!named.insert(m.name).second) continue;
-      ComparedMetric compared{m.name, m.unit, m.better, {}};
-      for (const Runs& group : groups) compared.group.push_back(group_of(m.name, group, groups[0]));
-      out.metric.push_back(std::move(compared));
+      out.metric.push_back(compared(m, groups, all.emplace_back()));
     }
   }
+  for (size_t g = 1; g < groups.size(); ++g) {
+    std::vector<double> p;
+    std::vector<size_t> of;
+    for (size_t k = 0; k < out.metric.size(); ++k) {
+      const bool judged = std::find(suite.begin(), suite.end(), out.metric[k].name) != suite.end();
+      if (judged && all[k][g].group.difference.n > 0) p.push_back(all[k][g].group.p), of.push_back(k);
+    }
+    const std::vector<double> together = holm(p);
+    for (size_t k = 0; k < of.size(); ++k) all[of[k]][g].group.p_holm = together[k];
+  }
+  for (size_t k = 0; k < out.metric.size(); ++k)
+    for (size_t g = 0; g < groups.size(); ++g) {
+      if (g > 0) all[k][g].group.verdict = verdict_of(all[k][g], out.metric[k].relevant);
+      out.metric[k].group.push_back(std::move(all[k][g].group));
+    }
   return out;
 }
 

@@ -29,15 +29,24 @@ Spread spread_of(const std::vector<double>& values);
 /// mean is at least as far from 0. All 2^n of them up to n = 16, 65536 drawn ones beyond. 1 for none.
 double sign_flip_p(const std::vector<double>& differences);
 
+/// Holm's correction of several p for each other (Scand. J. Statist. 6, 1979), in their order; never above 1.
+std::vector<double> holm(const std::vector<double>& p);
+
 struct ComparedMetric {
   std::string name, unit;
   Better better;
+  double relevant =
+      0;  // smallest difference that matters: 5 % of the first group's median, or what the unit makes of it
   struct Group {
     Spread value;
+    double mean = 0;                // NaN where n = 0; of a share that is 0 or 1 in each run the share of the runs
     std::int64_t missing = 0;       // runs with a score that lacks it
     std::optional<int> worst_seed;  // none where all are equal
     Spread difference;              // to the first group, over the seeds that both have
-    double p = 1;                   // of no difference
+    double effect = 0;              // mean of the differences over their deviation; NaN for fewer than 2
+    double p = 1;                   // of no difference; of a number that is good near 0 by its distance from 0
+    std::optional<double> p_holm;   // the same for all metrics of the suite together; none for others
+    std::string verdict;            // "better", "worse", "same" or "unclear"; empty for the first group
   };
   std::vector<Group> group;
 };
@@ -54,9 +63,12 @@ struct Comparison {
 };
 
 /// Groups runs by their settings, in the order in which they first appear; seeds are what pairs runs across groups.
+/// A group is better or worse than the first one when the difference is relevant in the median and its p (Holm's, for
+/// metrics of the suite) is at most 0.05; the same when the whole interval of the difference is irrelevant.
+/// @param suite  metrics that are judged together
 /// @throws Error where one group has a seed twice; Error (not_comparable) where groups that are paired by a seed were
 /// scored against different truths, unless the settings of the mine, the drive or the lasers differ
-Comparison compare_runs(const std::vector<ScoredRun>& runs);
+Comparison compare_runs(const std::vector<ScoredRun>& runs, const std::vector<std::string>& suite = {});
 
 /// A table for people of the metrics named, those there are.
 std::string comparison_table(const Comparison& comparison, const std::vector<std::string>& names);

@@ -61,7 +61,9 @@ std::string comparison_table(const Comparison& c, const std::vector<std::string>
       if (group.worst_seed) out += "worst: seed " + std::to_string(*group.worst_seed);
       if (g > 0 && group.difference.n > 0)
         out += "   minus A: " + short_spread(group.difference) + " over " + std::to_string(group.difference.n) +
-               " seeds, p = " + short_number(group.p);
+               " seeds, p = " + short_number(group.p) +
+               (group.p_holm ? " (Holm " + short_number(*group.p_holm) + ")" : "") + ", effect " +
+               short_number(group.effect) + ": " + group.verdict;
       if (group.missing > 0) out += "   missing in " + std::to_string(group.missing);
       out += "\n";
     }
@@ -71,7 +73,7 @@ std::string comparison_table(const Comparison& c, const std::vector<std::string>
 
 void write_comparison(const std::string& file, const Comparison& c) {
   Json j;
-  j["schema"] = 1;
+  j["schema"] = 2;
   j["groups"] = Json::array();
   for (const Comparison::Group& g : c.group)
     j["groups"].push_back({{"differs_by", g.label}, {"seeds", g.seed}, {"failed", g.failed}});
@@ -80,15 +82,20 @@ void write_comparison(const std::string& file, const Comparison& c) {
     Json groups = Json::array();
     for (size_t g = 0; g < m.group.size(); ++g) {
       Json one = written(m.group[g].value);
+      one["mean"] = number(m.group[g].mean);
       one["missing"] = m.group[g].missing;
       one["worst_seed"] = m.group[g].worst_seed ? Json(*m.group[g].worst_seed) : Json(nullptr);
       if (g > 0) {
         one["difference"] = written(m.group[g].difference);
+        one["effect"] = number(m.group[g].effect);
         one["p"] = m.group[g].p;
+        one["p_holm"] = m.group[g].p_holm ? Json(*m.group[g].p_holm) : Json(nullptr);
+        one["verdict"] = m.group[g].verdict;
       }
       groups.push_back(one);
     }
-    j["metrics"][m.name] = {{"unit", m.unit}, {"better", better_name(m.better)}, {"groups", groups}};
+    j["metrics"][m.name] = {
+        {"unit", m.unit}, {"better", better_name(m.better)}, {"relevant", m.relevant}, {"groups", groups}};
   }
   write_text(file, j.dump(1) + "\n");
 }

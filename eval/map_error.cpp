@@ -53,10 +53,38 @@ bool inside(const Dexels& solid, const Vec3& p) {
   return false;
 }
 
+// The points in an order in which neighbours in space come after one another (Morton's, in cubes of 0.5 m): those that
+// look at the same faces find them in the cache.
+std::vector<std::uint32_t> neighbours_together(const std::vector<Vec3>& p) {
+  const auto spread = [](std::uint64_t v) {  // 21 bits, two zeros between each
+    v = (v | v << 32) & 0x1f00000000ffffull;
+    v = (v | v << 16) & 0x1f0000ff0000ffull;
+    v = (v | v << 8) & 0x100f00f00f00f00full;
+    v = (v | v << 4) & 0x10c30c30c30c30c3ull;
+    return (v | v << 2) & 0x1249249249249249ull;
+  };
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(p.size());
+  parallel_for(
+      p.size(),
+      [&](size_t i) {
+        std::uint64_t key = 0;
+        for (int k = 0; k < 3; ++k) {
+          const double c = std::floor(2 * p[i][k]) + (1 << 20);
+          key |= spread(static_cast<std::uint64_t>(std::isfinite(c) ? std::clamp(c, 0.0, 2097151.0) : 0.0)) << k;
+        }
+        keyed[i] = {key, static_cast<std::uint32_t>(i)};
+      },
+      grain);
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<std::uint32_t> order;
+  for (const auto& [key, i] : keyed) order.push_back(i);
+  return order;
+}
+
 // Near first: most points lie close, and a small radius prunes best.
 std::optional<Closest> nearest(const Caster& caster, const Vec3& p, const std::optional<Vec3>& seen_along) {
   constexpr double everywhere = 1e6;
-  for (const double radius_m : {0.5, 5.0, everywhere})
+  for (const double radius_m : {0.1, 0.5, 5.0, everywhere})
     if (const auto found = caster.closest(p, radius_m, seen_along)) return found;
   return seen_along ? nearest(caster, p, {}) : std::nullopt;
 }
@@ -128,11 +156,11 @@ struct Recall {
 };
 
 Recall recall_of(const std::vector<char>& found, const Patches& patches, const Observable& observable,
-                 std::optional<Label> label) {
+                 std::optional<Label> label, int beams = 1) {
   double seen = 0, both = 0;
   Recall recall;
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
-    if (!observable.seen(p) || (label && patches.label(p) != *label)) continue;
+    if (!observable.seen(p, beams) || (label && patches.label(p) != *label)) continue;
     ++recall.patches;
     seen += patches.area_m2(p);
     if (found[p]) both += patches.area_m2(p);
@@ -154,6 +182,8 @@ void add_threshold(const MetricList& list, double tau_m, const MapPoints& points
   const std::string unseen = why.empty() ? "no surface was observable" : why;
   list.add("precision_" + name, precision, "share", Better::higher, c.points, no_point);
   list.add("recall_" + name, why.empty() ? recall.share : none, "share", Better::higher, recall.patches, unseen);
+  const Recall well_seen = recall_of(found, patches, observable, {}, 3);
+  list.add("recall3_" + name, why.empty() ? well_seen.share : none, "share", Better::higher, well_seen.patches, unseen);
   list.add("f_" + name, sum > 0 ? 2 * precision * recall.share / sum : (sum == 0 ? 0 : none), "share", Better::higher,
            c.points, std::isfinite(precision) ? unseen : no_point);
 }
@@ -188,9 +218,11 @@ LaidPoints lay(const MapPoints& points, const std::function<const Pose&(size_t)>
                   std::vector<std::uint32_t>(n, 0), std::vector<std::uint8_t>(n, 0),
                   std::vector<Vec3>(n, Vec3::Zero())};
   const Mesh& mesh = caster.mesh();
+  const std::vector<std::uint32_t> order = neighbours_together(points.p_M);
   parallel_for(
       n,
-      [&](size_t i) {
+      [&](size_t k) {
+        const size_t i = order[k];
         const Vec3 p = X_WM(i) * points.p_M[i];
         if (!p.allFinite()) return;
         std::optional<Vec3> seen_along;
@@ -256,7 +288,8 @@ Windows windows_of(const PathMatch& match, double window_m) {
   Windows windows;
   for (size_t begin = 0, end; begin < match.size(); begin = end) {
     end = begin;
-    const double until_m = (std::floor(match.along_m[begin] / window_m) + 1) * window_m;
+    constexpr double rounding_m = 1e-6;
+    const double until_m = (std::floor((match.along_m[begin] + rounding_m) / window_m) + 1) * window_m - rounding_m;
     while (end < match.size() && (end == begin || match.along_m[end] < until_m)) ++end;
     windows.from_s.push_back(match.stamp_s[begin]);
     windows.X_WM.push_back(align_mean_pose(match, begin, end));

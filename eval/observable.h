@@ -44,7 +44,7 @@ struct Observable {
   std::vector<std::uint8_t> patch_hits;  // (patches) noise-free beams that met it within incidence_rad, at most 255
   std::vector<std::uint8_t> face_hits;   // (faces) the same
 
-  bool seen(std::uint32_t patch) const { return patch_hits[patch] > 0; }
+  bool seen(std::uint32_t patch, int beams = 1) const { return patch_hits[patch] >= beams; }
 };
 
 Observable observable_surface(const Patches& patches, const TrueScans& scans, size_t faces, double incidence_rad);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double deg = std::numbers::pi / 180;
+constexpr double rounding_m = 1e-6;  // a way that is a whole number of steps is not one step longer by its last bit
 
 // The rotation R that maximises trace(R^T * H).
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& H) {
@@ -71,11 +72,39 @@ PathMatch associate(const Trajectory& truth, const Trajectory& estimate, const P
     const bool on_a_pose = t == truth.stamp_s[a] || t == truth.stamp_s[b];
     if (gap_s > max_gap_s && !on_a_pose) continue;
     const double s = gap_s > 0 ? (t - truth.stamp_s[a]) / gap_s : 0;
+    if (!on_a_pose) match.widest_s = std::max(match.widest_s, gap_s);
     match.index.push_back(i);
     match.stamp_s.push_back(t);
     match.along_m.push_back(along[a] + s * (along[b] - along[a]));
     match.X_WB.push_back(interpolate(truth.X_WB[a], truth.X_WB[b], s) * X_BN);
     match.X_MB.push_back(estimate.X_WB[i]);
+  }
+  return match;
+}
+
+PathMatch associate_nearest(const Trajectory& truth, const Trajectory& estimate, double max_diff_s) {
+  constexpr size_t nobody = static_cast<size_t>(-1);
+  PathMatch match;
+  match.asked = std::min(truth.size(), estimate.size());
+  std::vector<size_t> taker(truth.size(), nobody);
+  const auto apart = [&](size_t t, size_t e) { return std::abs(truth.stamp_s[t] - estimate.stamp_s[e]); };
+  size_t near = 0;
+  for (size_t e = 0; e < estimate.size() && !truth.empty(); ++e) {
+    if (!estimate.X_WB[e].matrix().allFinite()) continue;
+    while (near + 1 < truth.size() && apart(near + 1, e) < apart(near, e)) ++near;
+    if (apart(near, e) > max_diff_s) continue;
+    if (taker[near] == nobody || apart(near, e) < apart(near, taker[near])) taker[near] = e;
+  }
+  const std::vector<double> along = distance_along(truth);
+  for (size_t t = 0; t < truth.size(); ++t) {
+    const size_t e = taker[t];
+    if (e == nobody) continue;
+    match.index.push_back(e);
+    match.stamp_s.push_back(estimate.stamp_s[e]);
+    match.along_m.push_back(along[t]);
+    match.X_WB.push_back(truth.X_WB[t]);
+    match.X_MB.push_back(estimate.X_WB[e]);
+    match.widest_s = std::max(match.widest_s, apart(t, e));
   }
   return match;
 }
@@ -111,12 +140,25 @@ Alignment align_se3(const PathMatch& match) {
           "least squares over the positions, Umeyama without scale (6 degrees of freedom fitted)", ""};
 }
 
+Alignment align_yaw_xyz(const PathMatch& match) {
+  ADIT_CHECK(match.size() > 0);
+  const Means mean = mean_positions(match, 0, match.size());
+  double along = 0, across = 0;
+  for (size_t i = 0; i < match.size(); ++i) {
+    const Vec3 w = match.X_WB[i].translation() - mean.W, m = match.X_MB[i].translation() - mean.M;
+    along += w.x() * m.x() + w.y() * m.y();
+    across += w.y() * m.x() - w.x() * m.y();
+  }
+  return {laid(rotation_of(std::atan2(across, along), 0, 0), mean),
+          "least squares over the positions, turned about the vertical alone (4 degrees of freedom fitted)", ""};
+}
+
 std::vector<PoseError> pose_errors(const PathMatch& match, const Pose& X_WM) {
   std::vector<PoseError> errors;
   for (size_t i = 0; i < match.size(); ++i) {
     const Pose X = X_WM * match.X_MB[i];
     errors.push_back({match.stamp_s[i], match.along_m[i], match.X_WB[i], X.translation() - match.X_WB[i].translation(),
-                      yaw_pitch_roll(match.X_WB[i].linear().transpose() * X.linear())});
+                      yaw_pitch_roll(match.X_WB[i].linear().transpose() * X.linear()), X});
   }
   return errors;
 }
@@ -157,7 +199,7 @@ void add_rpe(const MetricList& list, const PathMatch& match, const std::vector<d
     std::int64_t pairs = 0;
     size_t j = 0;
     for (size_t i = 0; i < match.size(); ++i) {
-      while (j < match.size() && match.along_m[j] - match.along_m[i] < d) ++j;
+      while (j < match.size() && match.along_m[j] - match.along_m[i] < d - rounding_m) ++j;
       if (j == match.size()) break;
       const Pose truth = match.X_WB[i].inverse() * match.X_WB[j], estimate = match.X_MB[i].inverse() * match.X_MB[j];
       const Pose error = truth.inverse() * estimate;
@@ -183,7 +225,7 @@ void add_length(const MetricList& list, const PathMatch& match, const std::strin
   for (size_t i = 0; i < match.size(); ++i) {
     if (along.empty()) {
       along.push_back(match.along_m[i]);
-    } else if (match.along_m[i] - match.along_m[last] >= 1) {
+    } else if (match.along_m[i] - match.along_m[last] >= 1 - rounding_m) {
       truth.push_back(truth.back() + (match.X_WB[i].translation() - match.X_WB[last].translation()).norm());
       estimate.push_back(estimate.back() + (match.X_MB[i].translation() - match.X_MB[last].translation()).norm());
       along.push_back(match.along_m[i]);
@@ -194,7 +236,7 @@ void add_length(const MetricList& list, const PathMatch& match, const std::strin
   const double ratio = chords > 0 ? estimate.back() / truth.back() : none;
   double worst = none;
   for (size_t i = 0, j = 0; i < along.size(); ++i) {
-    while (j < along.size() && along[j] - along[i] < 50) ++j;
+    while (j < along.size() && along[j] - along[i] < 50 - rounding_m) ++j;
     if (j == along.size()) break;
     const double r = (estimate[j] - estimate[i]) / (truth[j] - truth[i]);
     if (!(std::abs(r - 1) <= std::abs(worst - 1))) worst = r;

@@ -17,6 +17,7 @@ struct PathMatch {
   std::vector<double> along_m;   // (n) true distance driven until then
   std::vector<Pose> X_WB, X_MB;  // (n) truth, estimate
   size_t asked = 0;              // poses that the estimate has
+  double widest_s = 0;           // gap that was interpolated, or difference of stamps
 
   size_t size() const { return index.size(); }
   double share() const { return asked ? static_cast<double>(size()) / static_cast<double>(asked) : 0; }
@@ -26,6 +27,10 @@ struct PathMatch {
 /// in a gap of it wider than max_gap_s, have no match.
 /// @param X_BN  pose of the judged body frame in the true one (the nominal mount's; identity where mounts are exact)
 PathMatch associate(const Trajectory& truth, const Trajectory& estimate, const Pose& X_BN, double max_gap_s);
+
+/// The truth's pose that is nearest in time, within max_diff_s; a pose of the truth goes to the nearest of those that ask
+/// for it. A truth with fewer poses than the estimate asks for as many as it has.
+PathMatch associate_nearest(const Trajectory& truth, const Trajectory& estimate, double max_diff_s);
 
 /// How M is laid on W.
 struct Alignment {
@@ -40,6 +45,8 @@ Alignment align_first_pose(const PathMatch& match);
 /// its straight line by less than 0.5 m rms fixes no turn about it: then by the mean of position and of orientation,
 /// and a warning.
 Alignment align_se3(const PathMatch& match);
+/// Least squares over the positions, turned about the vertical alone: M's z must be known to be W's.
+Alignment align_yaw_xyz(const PathMatch& match);
 /// By the mean of position and of orientation (the matrix nearest to the sum of the relative rotations).
 Pose align_mean_pose(const PathMatch& match, size_t begin, size_t end);
 

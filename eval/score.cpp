@@ -2,13 +2,17 @@
 #include "eval/score.h"
 
 #include "base/error.h"
+#include "eval/bound.h"
 #include "eval/closure_score.h"
+#include "eval/consistency.h"
+#include "eval/graph_score.h"
 #include "eval/grid_error.h"
 #include "eval/map_error.h"
 #include "eval/metric_list.h"
 #include "eval/observable.h"
 #include "eval/passage_map.h"
 #include "eval/path_error.h"
+#include "eval/plausible.h"
 #include "eval/topology.h"
 #include "eval/true_scans.h"
 #include "eval/volume_error.h"
@@ -47,8 +51,27 @@ struct Bench {
   Pose X_BN;          // the body as the mapping laser's nominal mount has it, in the true body
   PathMatch match;
   std::string no_path;  // why there is no path to judge, or empty
-  Alignment first_pose, se3;
+  Alignment first_pose, se3, yaw_xyz;
 };
+
+PathMatch matched(const Trajectory& truth, const Trajectory& estimate, const Pose& X_BN, const ScoreSettings& s) {
+  if (s.association != "nearest") return associate(truth, estimate, X_BN, s.max_gap_s);
+  PathMatch match = associate_nearest(truth, estimate, s.max_diff_s);
+  for (Pose& X : match.X_WB) X = X * X_BN;
+  return match;
+}
+
+void check_share(const PathMatch& match, const Trajectory& truth, const Trajectory& estimate) {
+  if (match.share() >= least_share) return;
+  const auto span = [](const Trajectory& path) {
+    return path.empty() ? std::string("nothing")
+                        : text(path.stamp_s.front()) + " to " + text(path.stamp_s.back()) + " s";
+  };
+  throw Error("the truth covers " + std::to_string(match.size()) + " of the estimate's " + std::to_string(match.asked) +
+                  " poses (" + span(truth) + ", the estimate " + span(estimate) +
+                  "); at least 95 % is needed: do the stamps belong together?",
+              Fault::not_comparable);
+}
 
 Pose nominal_body(const Truth& truth, const Rig& nominal, int laser) {
   if (laser < 0) return Pose::Identity();
@@ -83,22 +106,18 @@ Bench make_bench(const World& world, const Truth& truth, const Rig& nominal, con
           {},
           "",
           {},
+          {},
           {}};
-  b.match = associate(truth.drive.path, estimate.path, b.X_BN, settings.max_gap_s);
+  b.match = matched(truth.drive.path, estimate.path, b.X_BN, settings);
   if (estimate.path.empty()) {
     b.no_path = "the estimate has no path";
     return b;
   }
-  if (b.match.share() < least_share)
-    throw Error("the truth covers " + std::to_string(b.match.size()) + " of the estimate's " +
-                    std::to_string(b.match.asked) + " poses (" +
-                    text(b.truth.drive.path.empty() ? 0 : b.truth.drive.path.stamp_s.front()) + " to " +
-                    text(b.truth.drive.path.empty() ? 0 : b.truth.drive.path.stamp_s.back()) + " s, the estimate " +
-                    text(estimate.path.stamp_s.front()) + " to " + text(estimate.path.stamp_s.back()) +
-                    " s); at least 95 % is needed: do the stamps belong together?",
-                Fault::not_comparable);
+  check_share(b.match, truth.drive.path, estimate.path);
+  check_plausible(estimate, b.match);
   b.first_pose = align_first_pose(b.match);
   b.se3 = align_se3(b.match);
+  b.yaw_xyz = align_yaw_xyz(b.match);
   return b;
 }
 
@@ -113,8 +132,7 @@ Trajectory lifted(const Estimate& estimate) {
 void score_open_loop(const Bench& b, const MetricList& list) {
   const bool have = !b.estimate.path.empty() && b.estimate.open_loop.size() == b.estimate.path.size();
   const std::string why = have ? "" : "the estimate has no path of scan matching alone";
-  const PathMatch match =
-      have ? associate(b.truth.drive.path, lifted(b.estimate), b.X_BN, b.settings.max_gap_s) : PathMatch{};
+  const PathMatch match = have ? matched(b.truth.drive.path, lifted(b.estimate), b.X_BN, b.settings) : PathMatch{};
   std::vector<PoseError> first, best;
   if (match.size()) {
     first = pose_errors(match, align_first_pose(match).X_WM);
@@ -126,16 +144,28 @@ void score_open_loop(const Bench& b, const MetricList& list) {
   add_length(list, match, why);
 }
 
+// What a path alone is judged by.
+void add_path(const MetricList& list, const PathMatch& match, const Alignment& first_pose, const Alignment& se3,
+              const Alignment& yaw_xyz, const ScoreSettings& settings, const std::string& why, Score& score) {
+  list.add("matched_share", why.empty() ? match.share() : NAN, "share", Better::higher,
+           static_cast<std::int64_t>(match.asked), why);
+  score.poses = pose_errors(match, se3.X_WM);
+  add_ate(list.under("first_pose"), pose_errors(match, first_pose.X_WM), why);
+  add_ate(list.under("se3"), score.poses, why);
+  if (settings.gravity) add_ate(list.under("yaw_xyz"), pose_errors(match, yaw_xyz.X_WM), why);
+  add_rpe(list, match, settings.rpe_m, why);
+  add_length(list, match, why);
+}
+
 void score_path(const Bench& b, Score& score) {
   const MetricList list(score.metrics, "trajectory.");
-  list.add("matched_share", b.no_path.empty() ? b.match.share() : NAN, "share", Better::higher,
-           static_cast<std::int64_t>(b.match.asked), b.no_path);
-  score.poses = pose_errors(b.match, b.se3.X_WM);
-  add_ate(list.under("first_pose"), pose_errors(b.match, b.first_pose.X_WM), b.no_path);
-  add_ate(list.under("se3"), score.poses, b.no_path);
-  add_rpe(list, b.match, b.settings.rpe_m, b.no_path);
-  add_length(list, b.match, b.no_path);
+  add_path(list, b.match, b.first_pose, b.se3, b.yaw_xyz, b.settings, b.no_path, score);
   score_open_loop(b, list.under("open_loop"));
+  add_consistency(MetricList(score.metrics, "consistency."), b.match, b.estimate.covariance, b.no_path);
+  const Pose X_BS =
+      b.mapping_laser < 0 ? Pose::Identity() : b.nominal.mounts[static_cast<size_t>(b.mapping_laser)].X_BS;
+  add_bound(MetricList(score.metrics, "bound."), b.scans, b.world.mesh, b.mapping_laser, X_BS, b.match,
+            b.estimate.open_loop, b.no_path);
   const Vec3 p_BL = b.mapping_laser >= 0
                         ? Vec3(b.nominal.mounts[static_cast<size_t>(b.mapping_laser)].X_BS.translation())
                         : Vec3::UnitZ();
@@ -177,6 +207,11 @@ void score_points(const Bench& b, const Patches& patches, const Observable& obse
       lay(
           points, [&](size_t) -> const Pose& { return b.first_pose.X_WM; }, b.caster, patches, domain),
       "");
+  if (b.settings.gravity)
+    add("yaw_xyz", points,
+        lay(
+            points, [&](size_t) -> const Pose& { return b.yaw_xyz.X_WM; }, b.caster, patches, domain),
+        "");
   b.progress("score: points", 2, 3);
   if (points.stamp_s.empty()) {
     add("local_5m", {}, {}, "the map's points have no stamps");
@@ -199,6 +234,7 @@ void score_grid(const Bench& b, Score& score) {
   if (!why.empty()) {
     add_grid(list, {}, {}, why);
     add_topology(list, b.world, {}, {}, {}, 0, b.settings.pillar_m2, why);
+    add_graph(list, b.world, b.passages, {}, {}, {}, b.settings, why);
     return;
   }
   const auto laser = static_cast<size_t>(b.mapping_laser);
@@ -206,7 +242,9 @@ void score_grid(const Bench& b, Score& score) {
   add_grid(list, section, grid, "");
   double height_m = 0;
   for (const Pose& X : b.match.X_WB) height_m += X.translation().z() / static_cast<double>(b.match.size());
-  add_topology(list, b.world, section, cells_over(section, grid), b.se3.X_WM, height_m, b.settings.pillar_m2, "");
+  const std::vector<Grid::Cell> cells = cells_over(section, grid);
+  score.pillars = add_topology(list, b.world, section, cells, b.se3.X_WM, height_m, b.settings.pillar_m2, "");
+  add_graph(list, b.world, b.passages, section, cells, b.se3.X_WM, b.settings, "");
 }
 
 void score_volume(const Bench& b, const std::optional<VolumeDomain>& domain, const std::string& why, Score& score) {
@@ -220,8 +258,45 @@ void score_volume(const Bench& b, const std::optional<VolumeDomain>& domain, con
     mapped = b.estimate.surface;
     for (Vec3& v : mapped->vertex) v = b.se3.X_WM * v;
   }
-  add_volume(MetricList(score.metrics, "volume."), why.empty() ? enclosed_volume(b.world.mesh) : NAN, domain, why,
-             mapped, unmapped, b.estimate.volume_m3, b.estimate.volume_sigma_m3);
+  const std::vector<PassageVolume> shares =
+      add_volume(MetricList(score.metrics, "volume."), why.empty() ? enclosed_volume(b.world.mesh) : NAN, domain, why,
+                 mapped, unmapped, b.estimate.volume_m3, b.estimate.volume_sigma_m3, b.passages);
+  for (PassageScore& p : score.passages) {
+    if (shares.empty()) continue;
+    p.observable_m3 = shares[static_cast<size_t>(p.passage)].observable_m3;
+    p.mapped_m3 = shares[static_cast<size_t>(p.passage)].mapped_m3;
+  }
+}
+
+void add_path_meta(const PathMatch& match, const Alignment& first_pose, const Alignment& se3, const Alignment& yaw_xyz,
+                   const ScoreSettings& s, Score& score) {
+  score.meta.emplace_back("association", s.association == "nearest"
+                                             ? "nearest pose of the truth within " + text(s.max_diff_s) +
+                                                   " s, one to one; widest " + text(match.widest_s) + " s"
+                                             : "truth interpolated at the estimate's stamps, gaps up to " +
+                                                   text(s.max_gap_s) + " s; widest " + text(match.widest_s) + " s");
+  score.meta.emplace_back("first_pose", first_pose.how);
+  score.meta.emplace_back("se3", se3.how);
+  if (s.gravity) score.meta.emplace_back("yaw_xyz", yaw_xyz.how);
+}
+
+// Points that lie far from any rock though the path fits are told in another frame than it.
+void warn_of_frames(Score& score) {
+  const Metric *map = score.find("map.se3.p50_m"), *path = score.find("trajectory.se3.ate_rmse_m");
+  if (!map || !path || !(map->value > 1) || !(path->value < 0.3 * map->value)) return;
+  score.warnings.push_back("The points lie " + text(map->value) + " m off in the median, the path only " +
+                           text(path->value) + " m: are the points told in the frame of the path?");
+}
+
+void add_notes(Score& score) {
+  const auto silent = [](const std::string& name) {
+    for (const char* part : {"by_label", "rpe_", "bound.smooth", "bound.rough", "inside_95", "claim_"})
+      if (name.find(part) != std::string::npos) return true;
+    return false;
+  };
+  for (const std::string& warning : score.warnings) score.notes.push_back(warning);
+  for (const Metric& m : score.metrics)
+    if (!m.why.empty() && !silent(m.name)) score.notes.push_back(m.name + " could not be had: " + m.why + ".");
 }
 
 void add_meta(const Bench& b, Score& score) {
@@ -230,9 +305,7 @@ void add_meta(const Bench& b, Score& score) {
   add("method", b.estimate.method);
   add("world", b.world.name);
   add("truth_hash", b.truth.world);
-  add("association", "truth interpolated at the estimate's stamps, gaps up to " + text(s.max_gap_s) + " s");
-  add("first_pose", b.first_pose.how);
-  add("se3", b.se3.how);
+  add_path_meta(b.match, b.first_pose, b.se3, b.yaw_xyz, s, score);
   const Vec3 shift = b.X_BN.translation();
   add("mapping_mount_error", text(shift.norm()) + " m, " + text(Eigen::AngleAxisd(b.X_BN.linear()).angle() / deg) +
                                  " deg: taken out of the path, for it is the calibration's");
@@ -261,8 +334,11 @@ const Metric* Score::find(const std::string& name) const {
 Fields fields(ScoreSettings& s) {
   constexpr double most = 1e6;
   return {
+      {"association", &s.association, "of truth and estimate by stamps", {"interpolated", "nearest"}},
+      {"gravity", &s.gravity, "the map's z is vertical by measurement: yaw_xyz is told too"},
       {"max_gap_s", &s.max_gap_s, "widest gap between true poses that is interpolated", 0, most},
-      {"max_diff_s", &s.max_diff_s, "between an end of a relation and the nearest pose", 0, most},
+      {"max_diff_s", &s.max_diff_s, "between an end of a relation, or a pose of 'nearest', and the nearest pose", 0,
+       most},
       {"rpe_m", &s.rpe_m, "distances of the relative pose error"},
       {"closure_m", &s.closure_m, "a measured closure is right within this distance", 0, most},
       {"closure_deg", &s.closure_deg, "and this angle", 0, 180},
@@ -278,7 +354,8 @@ Fields fields(ScoreSettings& s) {
       {"domain_rock_m", &s.domain_rock_m, "rock about the observable surface that belongs to it", 0, 100},
       {"domain_step_m", &s.domain_step_m, "scans farther apart span no volume", 0, 100},
       {"domain_beam_deg", &s.domain_beam_deg, "between the beams whose fans span it", 0.01, 45},
-      {"pillar_m2", &s.pillar_m2, "smaller islands in a grid are no pillars", 0, most}};
+      {"pillar_m2", &s.pillar_m2, "smaller islands in a grid are no pillars", 0, most},
+      {"junction_m", &s.junction_m, "junctions of the map's graph and the mine's within this are one", 0, most}};
 }
 
 Score score_map(const World& world, const Truth& truth, const Rig& nominal, const Estimate& estimate,
@@ -288,7 +365,7 @@ Score score_map(const World& world, const Truth& truth, const Rig& nominal, cons
   score.X_WM_first_pose = b.first_pose.X_WM;
   score.X_WM_se3 = b.se3.X_WM;
   add_meta(b, score);
-  if (!b.se3.warning.empty()) score.notes.push_back(b.se3.warning);
+  if (!b.se3.warning.empty()) score.warnings.push_back(b.se3.warning);
   score_path(b, score);
 
   const Pose X_WC = truth.drive.path.empty() ? Pose::Identity() : truth.drive.path.X_WB.front();
@@ -305,9 +382,25 @@ Score score_map(const World& world, const Truth& truth, const Rig& nominal, cons
   score_points(b, patches, observable, domain ? &*domain : nullptr, score);
   score_grid(b, score);
   score_volume(b, domain, no_domain, score);
-  for (const Metric& m : score.metrics)
-    if (!m.why.empty() && m.name.find("by_label") == std::string::npos && m.name.find("rpe_") == std::string::npos)
-      score.notes.push_back(m.name + " could not be had: " + m.why + ".");
+  warn_of_frames(score);
+  add_notes(score);
+  return score;
+}
+
+Score score_path(const Trajectory& reference, const Estimate& estimate, const ScoreSettings& settings) {
+  const PathMatch match = matched(reference, estimate.path, Pose::Identity(), settings);
+  check_share(match, reference, estimate.path);
+  check_plausible(estimate, match);
+  const Alignment first_pose = align_first_pose(match), se3 = align_se3(match), yaw_xyz = align_yaw_xyz(match);
+  Score score;
+  score.meta.emplace_back("method", estimate.method);
+  add_path_meta(match, first_pose, se3, yaw_xyz, settings, score);
+  if (!se3.warning.empty()) score.warnings.push_back(se3.warning);
+  score.X_WM_first_pose = first_pose.X_WM;
+  score.X_WM_se3 = se3.X_WM;
+  add_path(MetricList(score.metrics, "trajectory."), match, first_pose, se3, yaw_xyz, settings, "", score);
+  add_consistency(MetricList(score.metrics, "consistency."), match, estimate.covariance, "");
+  add_notes(score);
   return score;
 }
 

@@ -38,6 +38,7 @@ struct PoseError {
   Pose X_WB;           // truth (of the body as the nominal mount has it)
   Vec3 p_error_W;      // estimate - truth, m
   YawPitchRoll error;  // of R_true^-1 * R_estimate
+  Pose X_WB_estimate = Pose::Identity();
 };
 
 /// How good the map is in one passage: of the map's points whose nearest surface lies there, laid by se3.
@@ -45,6 +46,15 @@ struct PassageScore {
   int passage;                  // id in World::passages
   std::int64_t n;               // points
   double bias_m, mae_m, p95_m;  // signed mean, mean and 95th percentile of the absolute error; NaN where n = 0
+  double observable_m3 = 0;     // void of the volume's domain that is nearest to the passage's centre line
+  double mapped_m3 = 0;         // what the map says of it; NaN without a mapped surface
+};
+
+/// How a pillar stands in a map's grid.
+struct PillarScore {
+  int pillar;       // id in World::pillars
+  double true_m2;   // of its island of cells that are not free, in the true section
+  double found_m2;  // in the grid; NaN where it does not stand there alone
 };
 
 /// A place where the map is worst, worst first; places lie at least 10 m apart.
@@ -60,7 +70,9 @@ struct Score {
   std::vector<Metric> metrics;
   std::vector<std::pair<std::string, std::string>> meta;  // truth's hash, alignments, association, thresholds
   std::vector<std::string> notes;                         // what was missing or left out, one sentence each
+  std::vector<std::string> warnings;                      // of the notes, those that cast doubt on the input
   std::vector<PassageScore> passages;
+  std::vector<PillarScore> pillars;
   std::vector<WorstPlace> worst;
 
   // For pictures; not in score.json.
@@ -77,8 +89,10 @@ struct Score {
 
 /// What counts as right. Keys below [score].
 struct ScoreSettings {
-  double max_gap_s = 0.5;    // between true poses that are interpolated
-  double max_diff_s = 0.13;  // of a relation's ends to the nearest pose
+  std::string association = "interpolated";  // of the truth at the estimate's stamps; or "nearest", one to one
+  double max_gap_s = 0.5;                    // between true poses that are interpolated
+  double max_diff_s = 0.13;                  // of a relation's ends, or of "nearest", to the nearest pose
+  bool gravity = false;                      // the map's z is vertical by measurement: yaw_xyz is told too
   std::vector<double> rpe_m = {1, 5, 10, 25, 50, 100};
   double closure_m = 0.5, closure_deg = 3;                // a measured closure is right within these
   double place_m = 3, place_deg = 45, revisit_m = 20;     // the same place; path between two visits of it
@@ -92,6 +106,7 @@ struct ScoreSettings {
   double domain_step_m = 0.3;  // farther scans are not joined
   double domain_beam_deg = 2;  // step of the beams whose fans span it
   double pillar_m2 = 4;        // smaller islands in the grid are no pillars
+  double junction_m = 3;       // a junction of the map's graph within this of a true one is that one
 };
 Fields fields(ScoreSettings& settings);
 
@@ -103,6 +118,10 @@ Fields fields(ScoreSettings& settings);
 /// The same bits on any number of threads.
 Score score_map(const World& world, const Truth& truth, const Rig& nominal, const Estimate& estimate,
                 const ScoreSettings& settings, const Progress& progress = {});
+
+/// The block `trajectory` alone (and `consistency`), against a reference path; alignments as of score_map.
+/// @throws Error (not_comparable) where the reference covers less than 95 % of the estimate's poses
+Score score_path(const Trajectory& reference, const Estimate& estimate, const ScoreSettings& settings);
 
 /// score.json: blocks nested by the dots of the names, every metric {"value", "unit", "better", "n"}; null comes with
 /// "why".

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int schema = 1;
+constexpr int schema = 2;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 Json number(double value) {
@@ -68,7 +68,12 @@ void write_score(const std::string& file, const Score& score) {
                         {"n", p.n},
                         {"bias_m", number(p.bias_m)},
                         {"mae_m", number(p.mae_m)},
-                        {"p95_m", number(p.p95_m)}});
+                        {"p95_m", number(p.p95_m)},
+                        {"observable_m3", number(p.observable_m3)},
+                        {"mapped_m3", number(p.mapped_m3)}});
+  Json& pillars = j["pillars"] = Json::array();
+  for (const PillarScore& p : score.pillars)
+    pillars.push_back({{"pillar", p.pillar}, {"true_m2", number(p.true_m2)}, {"found_m2", number(p.found_m2)}});
   Json& worst = j["worst"] = Json::array();
   for (const WorstPlace& w : score.worst)
     worst.push_back({{"x_m", w.p_W.x()},
@@ -93,8 +98,11 @@ Score read_score(const std::string& file) {
     score.notes = j.at("notes").get<std::vector<std::string>>();
     read_metrics(j, "", score.metrics);
     for (const Json& p : j.at("passages"))
-      score.passages.push_back(
-          {p.at("passage"), p.at("n"), number_of(p.at("bias_m")), number_of(p.at("mae_m")), number_of(p.at("p95_m"))});
+      score.passages.push_back({p.at("passage"), p.at("n"), number_of(p.at("bias_m")), number_of(p.at("mae_m")),
+                                number_of(p.at("p95_m")), number_of(p.at("observable_m3")),
+                                number_of(p.at("mapped_m3"))});
+    for (const Json& p : j.at("pillars"))
+      score.pillars.push_back({p.at("pillar"), number_of(p.at("true_m2")), number_of(p.at("found_m2"))});
     for (const Json& w : j.at("worst"))
       score.worst.push_back({Vec3(w.at("x_m"), w.at("y_m"), w.at("z_m")), w.at("passage"), w.at("n"),
                              number_of(w.at("bias_m")), number_of(w.at("mae_m"))});

@@ -9,6 +9,8 @@
 namespace adit {
 namespace {
 
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
 // Cells of the section whose centre is within an outline given in W.
 std::vector<size_t> cells_within(const std::vector<Vec2>& outline, const TrueSection& s, const Pose& X_MW,
                                  double height_W_m) {
@@ -51,20 +53,38 @@ int island_under(const std::vector<size_t>& cells, const Islands& islands) {
   return best;
 }
 
-// Per pillar: does it lie alone on an enclosed island?
-std::vector<char> stands_alone(const std::vector<std::vector<size_t>>& pillars, const Islands& islands,
-                               size_t least_cells) {
+struct Stand {
+  int island = -1;
+  bool alone = false;   // on an island that free space goes round and that has no other pillar
+  bool merged = false;  // on one that it shares, or that reaches the border
+};
+std::vector<Stand> stands(const std::vector<std::vector<size_t>>& pillars, const Islands& islands, size_t least_cells) {
   std::vector<int> under;
   std::map<int, int> tenants;
   for (const auto& cells : pillars) {
     under.push_back(island_under(cells, islands));
     if (under.back() >= 0) ++tenants[under.back()];
   }
-  std::vector<char> alone;
-  for (const int island : under)
-    alone.push_back(island >= 0 && islands.enclosed[static_cast<size_t>(island)] &&
-                    islands.cells[static_cast<size_t>(island)] >= least_cells && tenants[island] == 1);
-  return alone;
+  std::vector<Stand> all;
+  for (const int island : under) {
+    const auto k = static_cast<size_t>(island);
+    Stand stand{island, false, false};
+    if (island >= 0) {
+      stand.merged = tenants[island] > 1 || !islands.enclosed[k];
+      stand.alone = !stand.merged && islands.cells[k] >= least_cells;
+    }
+    all.push_back(stand);
+  }
+  return all;
+}
+
+// Free area over free area and enclosed islands.
+double extraction_of(const std::vector<char>& free, const Islands& islands, size_t least_cells) {
+  const auto open = static_cast<double>(std::count(free.begin(), free.end(), 1));
+  double pillars = 0;
+  for (size_t k = 0; k < islands.cells.size(); ++k)
+    if (islands.enclosed[k] && islands.cells[k] >= least_cells) pillars += static_cast<double>(islands.cells[k]);
+  return open + pillars > 0 ? open / (open + pillars) : none;
 }
 
 // Parts into which the free cells cut a pillar, less one; 1 where nothing of it is left.
@@ -116,10 +136,12 @@ Islands islands_of(const std::vector<char>& free, int width, int height) {
   return islands;
 }
 
-void add_topology(const MetricList& list, const World& world, const TrueSection& s,
-                  const std::vector<Grid::Cell>& cells, const Pose& X_WM, double height_W_m, double pillar_m2,
-                  const std::string& why) {
-  std::int64_t loops_true = 0, loops_found = 0, pillars_true = 0, pillars_found = 0, connections = 0;
+std::vector<PillarScore> add_topology(const MetricList& list, const World& world, const TrueSection& s,
+                                      const std::vector<Grid::Cell>& cells, const Pose& X_WM, double height_W_m,
+                                      double pillar_m2, const std::string& why) {
+  std::int64_t loops_true = 0, loops_found = 0, pillars_found = 0, connections = 0, split = 0, merged = 0;
+  double extraction_true = none, extraction = none, area_error = 0;
+  std::vector<PillarScore> scores;
   if (why.empty()) {
     std::vector<char> free(s.cell.size()), said(s.cell.size());
     for (size_t c = 0; c < s.cell.size(); ++c) {
@@ -127,24 +149,43 @@ void add_topology(const MetricList& list, const World& world, const TrueSection&
       said[c] = cells[c] == Grid::free;
     }
     const Islands truth = islands_of(free, s.width, s.height), map = islands_of(said, s.width, s.height);
-    const auto least = static_cast<size_t>(std::ceil(pillar_m2 / (s.cell_m * s.cell_m)));
+    const double cell_m2 = s.cell_m * s.cell_m;
+    const auto least = static_cast<size_t>(std::ceil(pillar_m2 / cell_m2));
     loops_true = loops(truth, least);
     loops_found = loops(map, least);
+    extraction_true = extraction_of(free, truth, least);
+    extraction = extraction_of(said, map, least);
     std::vector<std::vector<size_t>> pillars;
     for (const Pillar& p : world.pillars) pillars.push_back(cells_within(p.outline, s, X_WM.inverse(), height_W_m));
-    const std::vector<char> alone = stands_alone(pillars, truth, least), found = stands_alone(pillars, map, least);
+    const std::vector<Stand> stood = stands(pillars, truth, least), found = stands(pillars, map, least);
     for (size_t k = 0; k < pillars.size(); ++k) {
-      if (!alone[k]) continue;
-      ++pillars_true;
-      pillars_found += found[k];
-      connections += ways_through(pillars[k], said, s, std::max<size_t>(1, least / 4));
+      if (!stood[k].alone) continue;
+      const double true_m2 = cell_m2 * static_cast<double>(truth.cells[static_cast<size_t>(stood[k].island)]);
+      const double found_m2 =
+          found[k].alone ? cell_m2 * static_cast<double>(map.cells[static_cast<size_t>(found[k].island)]) : none;
+      scores.push_back({static_cast<int>(k), true_m2, found_m2});
+      if (found[k].alone) area_error += 100 * std::abs(found_m2 - true_m2) / true_m2;
+      pillars_found += found[k].alone;
+      merged += found[k].merged;
+      const std::int64_t ways = ways_through(pillars[k], said, s, std::max<size_t>(1, least / 4));
+      connections += ways;
+      split += ways > 0;
     }
   }
-  list.count("pillars_true", pillars_true, Better::higher, why);
+  const auto because = [&](const char* what) { return why.empty() ? std::string(what) : why; };
+  list.count("pillars_true", static_cast<std::int64_t>(scores.size()), Better::higher, why);
   list.count("pillars_found", pillars_found, Better::higher, why);
   list.count("loops_true", loops_true, Better::higher, why);
   list.count("loops_found", loops_found, Better::higher, why);
   list.count("false_connections", connections, Better::lower, why);
+  list.count("pillars_split", split, Better::lower, why);
+  list.count("pillars_merged", merged, Better::lower, why);
+  list.add("pillar_area_error_percent", pillars_found ? area_error / static_cast<double>(pillars_found) : none,
+           "percent", Better::lower, pillars_found, because("no pillar was found"));
+  const auto n = static_cast<std::int64_t>(s.cell.size());
+  list.add("extraction_ratio_true", extraction_true, "share", Better::higher, n, because("nothing was swept"));
+  list.add("extraction_ratio", extraction, "share", Better::higher, n, because("the map has no free cell"));
+  return scores;
 }
 
 }  // namespace adit

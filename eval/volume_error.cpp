@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -154,6 +155,38 @@ Dexels near_surface(const Patches& patches, const Observable& observable, double
   return dexels_of(columns, like);
 }
 
+// Each column goes to the passage whose centre line is nearest.
+std::vector<PassageVolume> shares_of(const Dexels& swept, const std::vector<const Dexels*>& mapped,
+                                     const PassageMap& passages) {
+  if (passages.empty()) return {};
+  std::vector<int> owner(swept.columns(), -1);
+  parallel_for(
+      static_cast<size_t>(swept.height),
+      [&](size_t j) {
+        for (int i = 0; i < swept.width; ++i) {
+          const size_t c = swept.index(i, static_cast<int>(j));
+          bool any = !swept.column(c).empty();
+          for (const Dexels* d : mapped) any = any || !d->column(c).empty();
+          if (any) owner[c] = passages.locate(swept.axis(i, static_cast<int>(j))).passage;
+        }
+      },
+      16);
+  std::vector<PassageVolume> shares(passages.size(), {0, mapped.empty() ? none : 0});
+  const auto height = [](std::span<const Interval> column) {
+    double sum = 0;
+    for (const Interval& s : column) sum += s.high_m - s.low_m;
+    return sum;
+  };
+  const double cell_m2 = swept.cell_m * swept.cell_m;
+  for (size_t c = 0; c < owner.size(); ++c) {
+    if (owner[c] < 0) continue;
+    PassageVolume& share = shares[static_cast<size_t>(owner[c])];
+    share.observable_m3 += cell_m2 * height(swept.column(c));
+    for (const Dexels* d : mapped) share.mapped_m3 += cell_m2 * height(d->column(c));
+  }
+  return shares;
+}
+
 }  // namespace
 
 VolumeDomain volume_domain(const Mesh& mesh, const Patches& patches, const Observable& observable,
@@ -169,9 +202,11 @@ VolumeDomain volume_domain(const Mesh& mesh, const Patches& patches, const Obser
           subtract(near_surface(patches, observable, settings.domain_rock_m, like), space)};
 }
 
-void add_volume(const MetricList& list, double true_m3, const std::optional<VolumeDomain>& domain,
-                const std::string& why, const std::optional<Mesh>& mapped, const std::string& why_unmapped,
-                std::optional<double> claimed_m3, std::optional<double> claimed_sigma_m3) {
+std::vector<PassageVolume> add_volume(const MetricList& list, double true_m3, const std::optional<VolumeDomain>& domain,
+                                      const std::string& why, const std::optional<Mesh>& mapped,
+                                      const std::string& why_unmapped, std::optional<double> claimed_m3,
+                                      std::optional<double> claimed_sigma_m3, const PassageMap& passages) {
+  std::vector<PassageVolume> shares;
   double observable_m3 = none, mapped_m3 = none, over_m3 = none, under_m3 = none, extrapolated_m3 = none;
   std::int64_t columns = 0;
   std::string reason = why.empty() ? why_unmapped : why;
@@ -181,11 +216,15 @@ void add_volume(const MetricList& list, double true_m3, const std::optional<Volu
   }
   if (domain && mapped) {
     const Dexels solid = dexels_of(*mapped, domain->swept);
-    const double right_m3 = intersect(solid, domain->swept).volume_m3();
-    over_m3 = intersect(solid, domain->rock).volume_m3();
+    const Dexels right = intersect(solid, domain->swept), over = intersect(solid, domain->rock);
+    const double right_m3 = right.volume_m3();
+    over_m3 = over.volume_m3();
     under_m3 = observable_m3 - right_m3;
     mapped_m3 = right_m3 + over_m3;
     extrapolated_m3 = enclosed_volume(*mapped) - mapped_m3;
+    shares = shares_of(domain->swept, {&right, &over}, passages);
+  } else if (domain) {
+    shares = shares_of(domain->swept, {}, passages);
   }
   const auto add = [&](const std::string& name, double value, const std::string& unit, Better better,
                        const std::string& because) { list.add(name, value, unit, better, columns, because); };
@@ -203,6 +242,13 @@ void add_volume(const MetricList& list, double true_m3, const std::optional<Volu
   add("claimed_m3", claimed_m3.value_or(none), "m3", Better::higher, unclaimed);
   add("sigma_percent", claimed_m3 && claimed_sigma_m3 && *claimed_m3 > 0 ? 100 * *claimed_sigma_m3 / *claimed_m3 : none,
       "percent", Better::lower, claimed_m3 ? "the mapper names no sigma" : unclaimed);
+  const double off = claimed_m3 && claimed_sigma_m3 && *claimed_sigma_m3 > 0
+                         ? (*claimed_m3 - observable_m3) / *claimed_sigma_m3
+                         : none;
+  const std::string no_claim = !why.empty() ? why : claimed_m3 ? "the mapper names no sigma" : unclaimed;
+  add("claim_sigmas", off, "ratio", Better::lower, no_claim);
+  add("claim_holds_95", std::isfinite(off) ? std::abs(off) <= 1.96 : none, "share", Better::higher, no_claim);
+  return shares;
 }
 
 }  // namespace adit

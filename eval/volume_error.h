@@ -6,10 +6,12 @@
 #include "base/progress.h"
 #include "eval/metric_list.h"
 #include "eval/observable.h"
+#include "eval/passage_map.h"
 #include "eval/true_scans.h"
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace adit {
 
@@ -27,13 +29,21 @@ struct VolumeDomain {
 VolumeDomain volume_domain(const Mesh& mesh, const Patches& patches, const Observable& observable,
                            const TrueScans& scans, const ScoreSettings& settings, const Progress& progress);
 
+/// A passage's share of the domain.
+struct PassageVolume {
+  double observable_m3 = 0, mapped_m3 = 0;  // mapped: NaN without a mapped surface
+};
+
 /// true_m3 (all of the void), observable_m3 (void in the domain), and of the mapped void in the domain: mapped_m3,
 /// error_percent (signed), overbreak_m3 (mapped rock), underbreak_m3 (void not mapped), iou; extrapolated_m3 (mapped
-/// outside of the domain); claimed_m3, sigma_percent: what the mapper itself says.
+/// outside of the domain); claimed_m3, sigma_percent: what the mapper itself says; claim_sigmas: how many of its sigmas
+/// its claim lies beside observable_m3 (signed); claim_holds_95: 1 within 1.96 of them, else 0.
 /// @param domain  or none with `why`
 /// @param mapped  boundary of the mapped void in W, closed; none with `why_unmapped`
-void add_volume(const MetricList& list, double true_m3, const std::optional<VolumeDomain>& domain,
-                const std::string& why, const std::optional<Mesh>& mapped, const std::string& why_unmapped,
-                std::optional<double> claimed_m3, std::optional<double> claimed_sigma_m3);
+/// @return (passages) the shares of the columns nearest to each passage's centre line; empty without a domain
+std::vector<PassageVolume> add_volume(const MetricList& list, double true_m3, const std::optional<VolumeDomain>& domain,
+                                      const std::string& why, const std::optional<Mesh>& mapped,
+                                      const std::string& why_unmapped, std::optional<double> claimed_m3,
+                                      std::optional<double> claimed_sigma_m3, const PassageMap& passages);
 
 }  // namespace adit

@@ -180,6 +180,21 @@ struct Query {
   std::int32_t face = -1;
 };
 
+constexpr double tie_m = 1e-10;  // rounding of coordinates a few hundred metres from their origin
+
+// How squarely a face looks at p: where p is nearest to an edge or a corner, the face whose plane it is farthest from tells
+// on which side p lies; another one may have it behind its back.
+double facing(const Mesh& mesh, std::int32_t face, const Vec3& p, const Vec3& at) {
+  return std::abs(mesh.normal(static_cast<size_t>(face)).dot(p - at));
+}
+
+// Ties between faces that share an edge; equal ones go to the lower index, whatever the order of the visit.
+bool beats(const Query& q, unsigned face, const Vec3& at) {
+  const auto f = static_cast<std::int32_t>(face);
+  const double ours = facing(*q.mesh, f, q.p, at), best = facing(*q.mesh, q.face, q.p, q.point);
+  return std::abs(ours - best) > tie_m ? ours > best : f < q.face;
+}
+
 bool look_at(RTCPointQueryFunctionArguments* args) {
   Query& q = *static_cast<Query*>(args->userPtr);
   const Mesh& mesh = *q.mesh;
@@ -188,9 +203,7 @@ bool look_at(RTCPointQueryFunctionArguments* args) {
   if (q.seen_along && (b - a).cross(c - a).dot(*q.seen_along) <= 0) return false;
   const Vec3 at = closest_on_triangle(q.p, a, b, c);
   const double d = (at - q.p).norm();
-  // Ties between faces that share an edge go to the lower index, whatever the order of the visit.
-  const bool nearer = d < q.best || (d == q.best && static_cast<std::int32_t>(f) < q.face);
-  if (!nearer) return false;
+  if (!(d <= q.best + tie_m) || (d >= q.best - tie_m && q.face >= 0 && !beats(q, f, at))) return false;
   q.best = d;
   q.point = at;
   q.face = static_cast<std::int32_t>(f);

@@ -203,6 +203,40 @@ TEST_F(TinyRun, ThePathOfALaserIsLaidOnTheBodyWhereItIsSaidSo) {
   fs::remove_all(dir);
 }
 
+TEST_F(TinyRun, APathIsScoredAgainstAPathAndItsErrorsGoToEvo) {
+  const std::string dir = fresh_folder("paths"), est = out_ + "/map/trajectory.tum";
+  ASSERT_EQ(adit_says("convert " + out_ + "/recording/truth.h5 " + dir + "/truth.tum").exit_code, 0);
+  const Answer said = adit_says("score --truth " + dir + "/truth.tum --trajectory " + est + " --evo " + dir +
+                                "/evo.zip --quiet -o " + dir);
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const nlohmann::json alone = nlohmann::json::parse(read_text(dir + "/score.json")),
+                       whole = nlohmann::json::parse(read_text(out_ + "/score.json"));
+  // But for the mount's unknown error, which a path alone cannot take out: degrees of it, over centimetres.
+  EXPECT_NEAR(alone["trajectory"]["se3"]["ate_xy_rmse_m"]["value"].get<double>(),
+              whole["trajectory"]["se3"]["ate_xy_rmse_m"]["value"].get<double>(), 0.02);
+  EXPECT_GT(fs::file_size(dir + "/evo.zip"), 1000u);
+  const Answer points = adit_says("score --truth " + dir + "/truth.tum --trajectory " + est + " --points " + out_ +
+                                  "/map/points.ply -o " + dir);
+  EXPECT_EQ(points.exit_code, 2);
+  EXPECT_THAT(points.err, HasSubstr("--world"));
+  fs::remove_all(dir);
+}
+
+TEST_F(TinyRun, AMapperOfOthersIsScoredBesideOursAndItsFailureCounts) {
+  const std::string dir = fresh_folder("others"), copied = dir + "/copied", failed = dir + "/failed";
+  const std::string recording = "map " + out_ + "/recording/log.h5 --quiet -o ";
+  // It "maps" by handing in our own path.
+  const Answer said = adit_says(recording + copied + " --set 'map.external.command=[\"cp\", \"" + out_ +
+                                "/map/trajectory.tum\", \"{out}/trajectory.tum\"]'");
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_TRUE(read_text(copied + "/map/trajectory.tum") == read_text(out_ + "/map/trajectory.tum"));
+  const Answer no = adit_says(recording + failed + " --set 'map.external.command=[\"false\"]'");
+  EXPECT_EQ(no.exit_code, 1);
+  EXPECT_FALSE(fs::exists(failed + "/map"));
+  EXPECT_TRUE(fs::exists(failed + "/external/log.txt"));
+  fs::remove_all(dir);
+}
+
 TEST_F(TinyRun, RunsAreComparedBySeedAndAFailedOneCounts) {
   const std::string dir = fresh_folder("compare"), failed = dir + "/failed";
   write_text(failed + "/scenario.toml", read_text(out_ + "/scenario.toml") + "\n");

@@ -81,6 +81,60 @@ TEST(Compare, PairsBySeedAndNamesTheWorstAndTheDifference) {
   EXPECT_NE(table.find("minus A: 0.05"), std::string::npos) << table;
 }
 
+TEST(Holm, RaisesEachPByHowManyAreLeft) {
+  // Sorted 0.01, 0.02, 0.04: times 3, 2 and 1, never falling.
+  EXPECT_EQ(holm({0.04, 0.01, 0.02}), (std::vector<double>{0.04, 0.03, 0.04}));
+  EXPECT_EQ(holm({0.5, 0.6}), (std::vector<double>{1, 1}));
+  EXPECT_TRUE(holm({}).empty());
+}
+
+TEST(Compare, SaysBetterWorseSameOrThatItCannotTell) {
+  const auto verdict = [](double shift, int seeds, double noise) {
+    std::vector<ScoredRun> runs;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      const double z = normal(9, Draw::test, static_cast<std::uint64_t>(seed));
+      runs.push_back(run_of(plain, seed, 0.1 + 0.01 * seed));
+      runs.push_back(run_of(other, seed, 0.1 + 0.01 * seed + shift + noise * z));
+    }
+    const auto c = compare_runs(runs, {"trajectory.se3.ate_rmse_m"});
+    return c.metric[0].group[1];
+  };
+  EXPECT_EQ(verdict(0.05, 8, 0.001).verdict, "worse");
+  EXPECT_EQ(verdict(-0.05, 8, 0.001).verdict, "better");
+  EXPECT_EQ(verdict(0.001, 8, 0.0001).verdict, "same");   // surely there, and 1 mm of 150: nobody would act on it
+  EXPECT_EQ(verdict(0.05, 4, 0.001).verdict, "unclear");  // four pairs give no p below 0.125
+  EXPECT_EQ(verdict(0, 8, 0).verdict, "same");
+  EXPECT_EQ(verdict(0.05, 8, 0.001).p_holm, verdict(0.05, 8, 0.001).p);  // alone in its suite
+  EXPECT_NEAR(verdict(0.05, 8, 0).difference.median, 0.05, 1e-12);
+  EXPECT_GT(verdict(0.05, 8, 0.001).effect, 10);
+}
+
+TEST(Compare, ANumberThatIsGoodNearZeroIsJudgedByItsSize) {
+  std::vector<ScoredRun> runs;
+  for (int seed = 1; seed <= 8; ++seed)
+    for (const bool first : {true, false}) {
+      ScoredRun run = run_of(first ? plain : other, seed, 0.1);
+      // From -3 to +1 percent: higher, and better.
+      run.score->metrics.push_back(
+          {"volume.error_percent", (first ? -3 : 1) + 0.01 * seed, "percent", Better::lower, 1, ""});
+      runs.push_back(run);
+    }
+  const Comparison c = compare_runs(runs, {"volume.error_percent"});
+  ASSERT_EQ(c.metric[1].name, "volume.error_percent");
+  EXPECT_EQ(c.metric[1].group[1].verdict, "better");
+  EXPECT_NEAR(c.metric[1].group[1].difference.median, 4, 1e-9);
+}
+
+TEST(Compare, TheShareOfRunsWhoseClaimHoldsIsTheMean) {
+  std::vector<ScoredRun> runs;
+  for (int seed = 1; seed <= 4; ++seed) {
+    runs.push_back(run_of(plain, seed, 0.1));
+    runs.back().score->metrics.push_back(
+        {"volume.claim_holds_95", seed == 2 ? 0.0 : 1.0, "share", Better::higher, 1, ""});
+  }
+  EXPECT_EQ(compare_runs(runs).metric[1].group[0].mean, 0.75);
+}
+
 TEST(Compare, AFailedRunIsAResult) {
   std::vector<ScoredRun> runs{run_of(plain, 1, 0.1), run_of(plain, 2, 0.2)};
   runs[1].score.reset();
