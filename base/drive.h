@@ -5,6 +5,7 @@
 #include "base/trajectory.h"
 
 #include <string>
+#include <vector>
 
 namespace adit {
 
@@ -19,6 +20,8 @@ struct Drive {
   DriveEnd end = DriveEnd::finished;
   std::string cause;    // one sentence, with place and time; empty when finished
   double driven_m = 0;  // of route.length_m
+  std::vector<int> ground =
+      {};  // (passages) what lies on the floor: 0 nothing, 1 track, 2 rubble; empty: nothing anywhere
 };
 
 }  // namespace adit

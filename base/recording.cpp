@@ -199,6 +199,13 @@ void save_drive(H5Writer& out, const Drive& drive) {
   out.array<double>("/route/line", line, {drive.route.line.size(), 2});
   out.array<std::int32_t>("/route/passages", passages, {passages.size()});
   out.number("/route", "length_m", drive.route.length_m);
+  if (!drive.route.backwards.empty()) {
+    std::vector<std::int32_t> ends;
+    for (const Route::Stretch& s : drive.route.backwards) ends.insert(ends.end(), {s.first, s.last});
+    out.array<std::int32_t>("/route/backwards", ends, {drive.route.backwards.size(), 2});
+  }
+  const std::vector<std::int32_t> ground(drive.ground.begin(), drive.ground.end());
+  if (!ground.empty()) out.array<std::int32_t>("/route/ground", ground, {ground.size()});
 }
 
 Drive load_drive(const H5Reader& in) {
@@ -219,6 +226,16 @@ Drive load_drive(const H5Reader& in) {
   const auto passages = in.array<std::int32_t>("/route/passages", count);
   drive.route.passages.assign(passages.begin(), passages.end());
   drive.route.length_m = in.number("/route", "length_m");
+  for (const std::string& name : in.names("/route")) {
+    const Shape shape = in.shape("/route/" + name);
+    if (name == "backwards" && shape.size() == 2) {
+      const auto ends = in.array<std::int32_t>("/route/backwards", {shape[0], 2});
+      for (size_t i = 0; i < ends.size(); i += 2) drive.route.backwards.push_back({ends[i], ends[i + 1]});
+    } else if (name == "ground" && shape.size() == 1) {
+      const auto ground = in.array<std::int32_t>("/route/ground", shape);
+      drive.ground.assign(ground.begin(), ground.end());
+    }
+  }
   return drive;
 }
 

@@ -51,7 +51,7 @@ Vec2 vec2_of(const json& j) {
 Passage passage_of(const json& j) {
   Passage p{j.at("a").get<int>(),          j.at("b").get<int>(),           {},
             j.at("width_m").get<double>(), j.at("height_m").get<double>(), j.at("length_m").get<double>(),
-            j.value("volume_m3", 0.0)};
+            j.value("volume_m3", 0.0),     j.value("blocked", false)};
   for (const json& v : j.at("centre_line")) p.centre_line.push_back(vec3_of(v));
   return p;
 }

@@ -24,6 +24,7 @@ struct Passage {
   double width_m, height_m;       // means over the passage
   double length_m;                // along the centre line, in plan
   double volume_m3 = 0;           // of its share of the void; all together are the mine's
+  bool blocked = false;           // no vehicle gets through: routes leave it out
 };
 
 /// Rock encircled by passages. Its id is its index in World::pillars.

@@ -28,14 +28,16 @@ json array_of(const std::vector<V>& vectors) {
 }
 
 json passage_of(const Passage& p, size_t id) {
-  return {{"id", id},
-          {"a", p.a},
-          {"b", p.b},
-          {"width_m", p.width_m},
-          {"height_m", p.height_m},
-          {"length_m", p.length_m},
-          {"volume_m3", p.volume_m3},
-          {"centre_line", array_of(p.centre_line)}};
+  json j = {{"id", id},
+            {"a", p.a},
+            {"b", p.b},
+            {"width_m", p.width_m},
+            {"height_m", p.height_m},
+            {"length_m", p.length_m},
+            {"volume_m3", p.volume_m3},
+            {"centre_line", array_of(p.centre_line)}};
+  if (p.blocked) j["blocked"] = true;
+  return j;
 }
 
 json junction_of(const Junction& j, size_t id) {

@@ -39,7 +39,8 @@ Intent Autopilot::want(double t_s, double step_s, double along_m, const Guide& g
   const double brake = motors_.acceleration_mps2;
   double limit = std::min(settings_.robot_speed_mps, motors_.speed_max_mps);
   limit = std::min(limit, motors_.turn_max_rad_s / std::max(guide.curvature_ahead, 1e-3));
-  limit = std::min(limit, std::max(slowest_mps, std::sqrt(2 * brake * std::max(0.0, left_m))));
+  const double to_halt_m = std::max(0.0, std::min(left_m, guide.shift_in_m));
+  limit = std::min(limit, std::max(slowest_mps, std::sqrt(2 * brake * to_halt_m)));
   if (turning_) limit = 0;
   speed_mps_ = std::clamp(limit, speed_mps_ - 2 * brake * step_s, speed_mps_ + brake * step_s);
   const double turn = turning_ && speed_mps_ == 0 ? std::copysign(motors_.turn_max_rad_s, guide.bearing_rad) : 0;

@@ -22,7 +22,8 @@ constexpr double lookahead_m = 0.9;
 constexpr double settle_s = 5;  // longest time to come to rest before the drive
 constexpr double still = 5e-3;  // m/s and rad/s
 constexpr double still_for_s = 0.2;
-constexpr double line_m = 0.25;  // between points of the line that was driven
+constexpr double line_m = 0.25;                  // between points of the line that was driven
+constexpr double shift_m = 0.01, shift_s = 1.5;  // so near to where forward and backward change it stops, and so long
 
 void check(const DriveSettings& settings) {
   if (settings.step_hz % settings.sample_hz != 0)
@@ -30,6 +31,9 @@ void check(const DriveSettings& settings) {
   if (settings.stop_gap_min_m > settings.stop_gap_max_m)
     throw Error("drive.stop_gap_min_m must not exceed stop_gap_max_m");
   if (settings.stop_min_s > settings.stop_max_s) throw Error("drive.stop_min_s must not exceed stop_max_s");
+  if (settings.track_share + settings.rubble_share > 1)
+    throw Error(say("drive.track_share = %g and drive.rubble_share = %g: their sum must not be above 1",
+                    settings.track_share, settings.rubble_share));
   if (settings.wobble_min_hz > settings.wobble_max_hz) throw Error("drive.wobble_min_hz must not exceed wobble_max_hz");
 }
 
@@ -53,10 +57,6 @@ void check_line(const World& world, const Floor& floor, const Route& route) {
                       route.line[i].x(), route.line[i].y()));
 }
 
-FloorKind floor_kind(const std::string& name) {
-  return name == "track" ? FloorKind::track : name == "rubble" ? FloorKind::rubble : FloorKind::smooth;
-}
-
 using Driver = std::variant<Pusher, Autopilot, Remote>;
 
 Driver make_driver(const DriveSettings& settings, const Vehicle& vehicle, std::uint64_t seed, double length_m) {
@@ -76,8 +76,7 @@ class Run {
         follower_(route),
         driver_(make_driver(settings, vehicle, seed, follower_.length_m())),
         watch_(world, floor_, vehicle) {
-    const FloorKind kind = floor_kind(settings.ground);
-    if (kind != FloorKind::smooth) relief_.emplace(world, floor_, kind, seed);
+    lay_ground(world, seed);
     start_ = start();
     if (by_route()) check_line(world, floor_, route);
     physics_.emplace(world.mesh, vehicle, start_, step_s_, relief_ ? &*relief_ : nullptr);
@@ -86,6 +85,7 @@ class Run {
   }
 
   Drive finish(const Progress& progress) {
+    reserve();
     for (std::int64_t k = 0;; ++k) {
       const double t_s = static_cast<double>(k) * step_s_;
       if (k % (settings_.step_hz / settings_.sample_hz) == 0) record(t_s);
@@ -99,7 +99,31 @@ class Run {
   }
 
  private:
+  // Room for twice the time that the route should take, so that a long path is not moved while it grows; what is not
+  // filled takes no memory.
+  void reserve() {
+    const bool pushed = vehicle_.drivetrain == Drivetrain::pushed;
+    const double speed =
+        pushed ? settings_.speed_mps : std::min(settings_.robot_speed_mps, vehicle_.motors.speed_max_mps);
+    const auto poses = static_cast<size_t>(2 * follower_.length_m() / speed * settings_.sample_hz);
+    drive_.path.stamp_s.reserve(poses);
+    drive_.path.X_WB.reserve(poses);
+  }
+
   bool by_route() const { return settings_.commands.empty(); }
+
+  void lay_ground(const World& world, std::uint64_t seed) {
+    if (settings_.ground == "smooth") return;
+    const bool mixed = settings_.ground == "mixed";
+    const FloorKind kind = settings_.ground == "track" ? FloorKind::track : FloorKind::rubble;
+    std::vector<FloorKind> kinds(world.passages.size(), kind);
+    if (mixed) kinds = draw_floor_kinds(world, settings_.track_share, settings_.rubble_share, seed);
+    for (const FloorKind k : kinds) drive_.ground.push_back(static_cast<int>(k));
+    if (mixed)
+      relief_.emplace(world, floor_, std::move(kinds), seed);
+    else
+      relief_.emplace(world, floor_, kind, seed);
+  }
 
   Pose start() const {
     const Vec2 ahead = follower_.point(std::min(0.5, follower_.length_m())) - follower_.point(0);
@@ -119,10 +143,13 @@ class Run {
       watch_rest(true);
     }
     const double moved = (motion_.X_WB.translation() - start_.translation()).norm();
-    if (!resting_ || moved > 0.2)
-      throw Error(say(
-          "%s cannot stand at the start (%.2f, %.2f, %.2f) m: it moved by %.2f m; start in a clear, level place",
-          vehicle_.name.c_str(), start_.translation().x(), start_.translation().y(), start_.translation().z(), moved));
+    if (!resting_ || moved > 0.2) {
+      const Vec3 p = start_.translation();
+      throw Error(
+          vehicle_.name + say(" cannot stand at the start (%.2f, %.2f, %.2f) m: it ", p.x(), p.y(), p.z()) +
+          say(resting_ ? "moved by %.2f m" : "did not come to rest within %.0f s", resting_ ? moved : settle_s) +
+          "; start in a clear, level place, with wheels that grip");
+    }
     look();
   }
 
@@ -141,15 +168,25 @@ class Run {
     if (!by_route()) return extend_line();
     const Pose2 X_WB = flatten(motion_.X_WB);
     guide_ = follower_.look(X_WB * Pose2{vehicle_.axle_x_m(), 0, 0}, lookahead_m);
-    along_m_ = guide_.along_m - vehicle_.axle_x_m();  // of B's origin
+    if (guide_.backward) guide_.curvature = -guide_.curvature;  // of the nose, whose speed is negative
+    along_m_ = guide_.along_m - vehicle_.axle_x_m();            // of B's origin
     drive_.driven_m = std::clamp(along_m_, drive_.driven_m, follower_.length_m());
   }
 
   Intent want(double t_s) {
-    if (auto* pusher = std::get_if<Pusher>(&driver_))
-      return pusher->want(t_s, step_s_, along_m_, guide_.curvature_ahead);
-    if (auto* autopilot = std::get_if<Autopilot>(&driver_)) return autopilot->want(t_s, step_s_, along_m_, guide_);
-    return std::get<Remote>(driver_).want(t_s, step_s_);
+    if (auto* remote = std::get_if<Remote>(&driver_)) return remote->want(t_s, step_s_);
+    if (guide_.shift_in_m < shift_m) {
+      if (!shift_at_s_) shift_at_s_ = t_s + shift_s;
+      if (t_s < *shift_at_s_) return {};
+      shift_at_s_.reset();
+      follower_.shift();
+      look();
+    }
+    Intent intent;
+    if (auto* pusher = std::get_if<Pusher>(&driver_)) intent = pusher->want(t_s, step_s_, along_m_, guide_);
+    if (auto* autopilot = std::get_if<Autopilot>(&driver_)) intent = autopilot->want(t_s, step_s_, along_m_, guide_);
+    if (guide_.backward) intent.speed_mps = -intent.speed_mps;
+    return intent;
   }
 
   Effort effort(const Intent& intent) {
@@ -215,7 +252,8 @@ class Run {
   Effort effort_;
   Drive drive_;
   double along_m_ = 0, still_s_ = 0;
-  std::vector<Vec2> line_;  // driven by commands
+  std::optional<double> shift_at_s_;  // when it goes on, the other way round
+  std::vector<Vec2> line_;            // driven by commands
   bool resting_ = false;
 };
 
@@ -241,7 +279,9 @@ Fields fields(DriveSettings& s) {
           {"ground",
            &s.ground,
            "what the wheels meet on the floor: smooth is the mesh alone",
-           {"smooth", "track", "rubble"}},
+           {"smooth", "track", "rubble", "mixed"}},
+          {"track_share", &s.track_share, "of the passages' length that has track, where the ground is mixed", 0, 1},
+          {"rubble_share", &s.rubble_share, "and that has rubble", 0, 1},
           {"commands", &s.commands, "CSV file time_s,speed_mps,turn_rate_rad_s to drive by, in place of the route"},
           {"step_hz", &s.step_hz, "steps of the physics a second", 120, 2000},
           {"sample_hz", &s.sample_hz, "poses of the path a second; divides step_hz", 120, 2000}};

@@ -4,6 +4,7 @@
 #include "base/frames.h"
 #include "base/route.h"
 
+#include <limits>
 #include <vector>
 
 namespace adit {
@@ -15,11 +16,13 @@ struct Guide {
   double curvature = 0;        // 1/m, to steer now; > 0 turns left
   double bearing_rad = 0;      // of the point that is steered for, from straight ahead; > 0 on the left
   double curvature_ahead = 0;  // 1/m, greatest to be steered from here to a metre and a half ahead, without sign
+  bool backward = false;       // the route is driven tail first here: bearing and curvature are those of the tail
+  double shift_in_m = std::numeric_limits<double>::infinity();  // way to where forward and backward change
 };
 
 /// Keeps a vehicle on its route by pure pursuit of a point ahead (Coulter, "Implementation of the pure pursuit path
 /// tracking algorithm", CMU-RI-TR-92-01). The foot on the route only moves on, by small steps, so that a route may
-/// cross itself or run back along itself.
+/// cross itself or run back along itself. Where forward and backward change it waits at that point for shift().
 class Follower {
  public:
   /// @param route  at least two points; else Error
@@ -29,16 +32,22 @@ class Follower {
   /// The line at a distance along it; straight on beyond its ends.
   Vec2 point(double along_m) const;
   double heading_rad(double along_m) const;
-  /// @param X_WA  the axle in plan, x forward
-  Guide look(const Pose2& X_WA, double lookahead_m);
+  /// @param X_WF  the axle in plan, x forward
+  /// @param lookahead_m  to the point steered for; between the changes of a manoeuvre less, down to 0.4 m
+  Guide look(const Pose2& X_WF, double lookahead_m);
+  /// It stands where forward and backward change: on to the next stretch.
+  void shift();
 
  private:
+  double shift_m() const;
   size_t segment(double along_m) const;
   Vec2 goal(double lookahead_m) const;
 
   std::vector<Vec2> line_;
-  std::vector<double> at_m_;     // of each point
-  std::vector<double> turns_m_;  // where it runs back on itself
+  std::vector<double> at_m_;      // of each point
+  std::vector<double> turns_m_;   // where it runs back on itself
+  std::vector<double> shifts_m_;  // where forward and backward change, forward first
+  size_t shifted_ = 0;            // of them behind
   double length_m_ = 0;
   double foot_m_ = 0;
   bool found_ = false;

@@ -6,8 +6,10 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 namespace adit {
@@ -15,12 +17,15 @@ namespace {
 
 constexpr double gravity_mps2 = 9.81;
 constexpr int rolling_iterations = 20, braked_iterations = 100;  // held wheels make a stiff chain from rock to frame
+constexpr double climbing_deg = 2, climbing_iterations = 5;  // for motors: more for each degree of slope beyond that
+constexpr int climbing_iterations_max = 60;
 constexpr double same_surface_m = 1e-3;  // a contact this far above a deeper one's plane is a surface of its own
 constexpr double sideways =
     0.57;                      // sine of the steepest side slope that a tyre stands on; beyond, a wheel has no flank
 constexpr double steep = 0.5;  // upward part of a normal: what is steeper is no ground
 constexpr double relief_margin_m = 0.02;
 constexpr int rock_group = 1, vehicle_group = 4, loose_group = 8;  // not 2: Bullet's static group shuns it
+constexpr double rock_reach_m = 0.15;
 constexpr int wheel_index = 1, frame_index = 2;
 constexpr int part_faces = 1 << 20;  // Bullet's triangle index has 21 bits within a part
 
@@ -65,6 +70,60 @@ void keep_true_contacts(btPersistentManifold& manifold, const btVector3& axle) {
   }
 }
 
+// The rock, which knows the triangles about the places asked for last: what moves slowly is asked for again and again.
+// Bullet's tree is asked for a box that reaches farther; of what it names, in its order, the triangles that touch the
+// box asked for are handed on, as the tree itself would do.
+class RockShape : public btBvhTriangleMeshShape {
+ public:
+  using btBvhTriangleMeshShape::btBvhTriangleMeshShape;
+
+  void processAllTriangles(btTriangleCallback* callback, const btVector3& low, const btVector3& high) const override {
+    for (Triangle& t : about(low, high).triangles)
+      if (TestAabbAgainstAabb2(t.low, t.high, low, high)) callback->processTriangle(t.corner, t.part, t.index);
+  }
+
+ private:
+  struct Triangle {
+    btVector3 corner[3], low, high;
+    int part, index;
+  };
+  struct Place {
+    btVector3 low{1, 1, 1}, high{0, 0, 0};
+    std::vector<Triangle> triangles;
+  };
+  struct Keep : btTriangleCallback {
+    std::vector<Triangle>& into;
+    explicit Keep(std::vector<Triangle>& triangles) : into(triangles) {}
+    void processTriangle(btVector3* corner, int part, int index) override {
+      Triangle t{{corner[0], corner[1], corner[2]}, corner[0], corner[0], part, index};
+      for (int k = 1; k < 3; ++k) t.low.setMin(corner[k]), t.high.setMax(corner[k]);
+      into.push_back(t);
+    }
+  };
+
+  Place& about(const btVector3& low, const btVector3& high) const {
+    const auto holds = [&](const Place& p) {
+      for (int k = 0; k < 3; ++k)
+        if (low[k] < p.low[k] || high[k] > p.high[k]) return false;
+      return true;
+    };
+    for (Place& place : places_)
+      if (holds(place)) return place;
+    Place& place = places_[next_];
+    next_ = (next_ + 1) % places_.size();
+    const btVector3 reach(rock_reach_m, rock_reach_m, rock_reach_m);
+    place.low = low - reach;
+    place.high = high + reach;
+    place.triangles.clear();
+    Keep keep(place.triangles);
+    btBvhTriangleMeshShape::processAllTriangles(&keep, place.low, place.high);
+    return place;
+  }
+
+  mutable std::array<Place, 16> places_;
+  mutable size_t next_ = 0;
+};
+
 // The face of the rock that a contact lies on.
 size_t face_of(const btPersistentManifold& m, const btManifoldPoint& p) {
   const bool rock_is_b = m.getBody0()->getUserIndex() > 0;
@@ -105,7 +164,7 @@ struct Physics::Impl {
   const Mesh& mesh;
   double step_s;
   btTriangleIndexVertexArray triangles;
-  std::unique_ptr<btBvhTriangleMeshShape> rock_shape;
+  std::unique_ptr<RockShape> rock_shape;
   std::unique_ptr<btCollisionObject> rock;
   std::vector<std::unique_ptr<btCollisionShape>> shapes;
   btDefaultCollisionConfiguration configuration;
@@ -155,7 +214,7 @@ struct Physics::Impl {
       part.m_vertexType = PHY_DOUBLE;
       triangles.addIndexedMesh(part, PHY_INTEGER);
     }
-    rock_shape = std::make_unique<btBvhTriangleMeshShape>(&triangles, true);
+    rock_shape = std::make_unique<RockShape>(&triangles, true);
     rock_shape->setMargin(0.002);
     rock = std::make_unique<btCollisionObject>();
     rock->setCollisionShape(rock_shape.get());
@@ -280,6 +339,16 @@ struct Physics::Impl {
     mode = vehicle.drivetrain == Drivetrain::skid_steer && !brake ? mode & ~fixed_axes : mode | fixed_axes;
   }
 
+  // On a slope the wheels, light beside the frame, must hold it up within one step, or they creep back by what is left
+  // undone: 8 % of 0.15 m/s at 10 degrees with 20 iterations. Hands push the frame itself.
+  int iterations(bool brake) const {
+    if (brake) return braked_iterations;
+    if (vehicle.drivetrain == Drivetrain::pushed) return rolling_iterations;
+    const double up = std::clamp<double>(frame->getWorldTransform().getBasis().getColumn(2).z(), -1, 1);
+    const double beyond_deg = std::max(0.0, std::acos(up) * 180 / std::numbers::pi - climbing_deg);
+    return std::min(rolling_iterations + static_cast<int>(climbing_iterations * beyond_deg), climbing_iterations_max);
+  }
+
   // Of the rock's faces that a body of that kind is nearer to than margin_m, not counting those flatter than asked.
   std::optional<size_t> deepest_face(int body, double margin_m, double normal_up_below) const {
     std::optional<size_t> face;
@@ -332,7 +401,7 @@ Physics::~Physics() = default;
 void Physics::step(const Effort& effort) {
   impl_->apply(effort);
   impl_->choose_friction(effort.brake);
-  impl_->world.getSolverInfo().m_numIterations = effort.brake ? braked_iterations : rolling_iterations;
+  impl_->world.getSolverInfo().m_numIterations = impl_->iterations(effort.brake);
   impl_->world.stepSimulation(impl_->step_s, 0);  // exactly one step of this length
 }
 

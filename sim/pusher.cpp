@@ -74,7 +74,7 @@ double Pusher::cruise_mps(double t_s) const {
   return std::clamp(v, 0.5 * settings_.speed_mps, 1.6 * settings_.speed_mps);
 }
 
-Intent Pusher::want(double t_s, double step_s, double along_m, double curvature_ahead) {
+Intent Pusher::want(double t_s, double step_s, double along_m, const Guide& guide) {
   Intent intent;
   if (t_s < go_at_s_ || arrived_) {
     speed_mps_ = 0;
@@ -90,8 +90,9 @@ Intent Pusher::want(double t_s, double step_s, double along_m, double curvature_
     return intent;
   }
   double limit = cruise_mps(t_s);
-  limit = std::min(limit, settings_.turn_max_deg_s * pi / 180 / std::max(curvature_ahead, 1e-3));
-  limit = std::min(limit, std::max(slowest_mps, std::sqrt(2 * brake_mps2 * left_m)));
+  limit = std::min(limit, settings_.turn_max_deg_s * pi / 180 / std::max(guide.curvature_ahead, 1e-3));
+  const double to_halt_m = std::min(left_m, std::max(0.0, guide.shift_in_m));
+  limit = std::min(limit, std::max(slowest_mps, std::sqrt(2 * brake_mps2 * to_halt_m)));
   speed_mps_ = std::clamp(limit, speed_mps_ - 2 * brake_mps2 * step_s, speed_mps_ + accelerate_mps2 * step_s);
   // People take quicker steps to walk faster, about with the root of the speed.
   const double pace = std::sqrt(speed_mps_ / settings_.speed_mps);

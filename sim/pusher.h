@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "sim/follower.h"
 #include "sim/physics.h"
 #include "sim/sim.h"
 
@@ -21,9 +22,8 @@ class Pusher {
  public:
   Pusher(const DriveSettings& settings, std::uint64_t seed, double length_m);
 
-  /// @param along_m          of the route's length; never runs back by much
-  /// @param curvature_ahead  1/m
-  Intent want(double t_s, double step_s, double along_m, double curvature_ahead);
+  /// @param along_m  of the route's length; never runs back by much
+  Intent want(double t_s, double step_s, double along_m, const Guide& guide);
   /// Stood for lead_in_s at the route's end.
   bool done(double t_s) const { return arrived_ && t_s >= go_at_s_; }
 

@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/relief.h"
 
+#include "base/error.h"
 #include "base/rng.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace adit {
 namespace {
 
 // Old haulage track, half buried: gauge 42 in.
 constexpr double tie_gap_m = 0.6, tie_half_width_m = 0.04, tie_half_length_m = 0.85, tie_m = 0.04, flank_m = 0.17;
+constexpr double tie_tilt = 1.6;                           // spread between a sleeper's ends, of its height
+constexpr double settled_m = 1.5, cross_level_max = 0.105;  // over which the bed settled; slope across
 constexpr double gauge_m = 1.067, rail_half_width_m = 0.03, rail_m = 0.03, rail_flank_m = 0.08;
 constexpr double planked_m = 2.5, ramp_m = 1.5;  // from a junction, and then up to the full height
+constexpr double blend_m = 0.6;                  // towards a passage that has something else
+constexpr double half_width_m = 6;               // beyond that from its centre line nothing of a passage lies
 // Broken rock: heaps and hollows, and stones on them.
 constexpr double heap_m = 0.75, heap_height_m = 0.058;  // size of the grid, spread of the heights
 constexpr double stone_gap_m = 0.35, stone_m = 0.035,
@@ -67,42 +73,90 @@ double stones(const Vec2& p, std::uint64_t seed) {
   return highest;
 }
 
-// A stretch of track and how far it lies from the track's ends.
-struct Stretch {
+// A piece of a passage's centre line and how far it lies from the passage's ends.
+struct Piece {
   Vec2 a, b;
-  double at_m, length_m;  // of a along the track; of the whole track
-  std::uint64_t track;
+  double at_m, length_m;  // of a along the passage; of the whole passage
+  size_t passage;
 };
 
-std::vector<Stretch> stretches_near(const World& world, const Vec2& middle, double reach_m) {
-  std::vector<Stretch> near;
+std::vector<Piece> pieces_near(const World& world, const Vec2& middle, double reach_m) {
+  std::vector<Piece> near;
   for (size_t i = 0; i < world.passages.size(); ++i) {
     const Passage& passage = world.passages[i];
     double at = 0;
     for (size_t k = 1; k < passage.centre_line.size(); ++k) {
       const Vec2 a = passage.centre_line[k - 1].head<2>(), b = passage.centre_line[k].head<2>();
       const double length = (b - a).norm();
-      if ((0.5 * (a + b) - middle).norm() < reach_m + 0.5 * length)
-        near.push_back({a, b, at, passage.length_m, static_cast<std::uint64_t>(i)});
+      if ((0.5 * (a + b) - middle).norm() < reach_m + 0.5 * length) near.push_back({a, b, at, passage.length_m, i});
       at += length;
     }
   }
   return near;
 }
 
-double track_on(const std::vector<Stretch>& near, const Vec2& p, std::uint64_t seed) {
+// 0 near the passage's ends, where it is planked or cleared, 1 away from them.
+double share_at(const Piece& s, double along_m) {
+  return std::clamp((std::min(along_m, s.length_m - along_m) - planked_m) / ramp_m, 0.0, 1.0);
+}
+
+double track_on(const std::vector<Piece>& near, const Vec2& p, std::uint64_t seed) {
   double highest = 0;
-  for (const Stretch& s : near) {
+  for (const Piece& s : near) {
     const Vec2 d = s.b - s.a;
     const double length = d.norm();
     if (length == 0) continue;
     const double t = d.dot(p - s.a) / length;
     if (t < 0 || t > length) continue;
     const double along = s.at_m + t, left = (d.x() * (p - s.a).y() - d.y() * (p - s.a).x()) / length;
-    const double share = std::clamp((std::min(along, s.length_m - along) - planked_m) / ramp_m, 0.0, 1.0);
-    if (share > 0) highest = std::max(highest, share * track_height_m(along, left, seed, s.track));
+    const double share = share_at(s, along);
+    if (share > 0) highest = std::max(highest, share * track_height_m(along, left, seed, s.passage));
   }
   return highest;
+}
+
+struct Nearest {
+  double distance_m = std::numeric_limits<double>::infinity();
+  const Piece* piece = nullptr;
+  double along_m = 0;
+};
+
+// What lies where passages differ.
+double mixed_on(const std::vector<Piece>& near, const std::vector<FloorKind>& kinds, const Vec2& p,
+                std::uint64_t seed) {
+  Nearest nearest[3];  // of each kind
+  for (const Piece& s : near) {
+    const Vec2 d = s.b - s.a;
+    const double length = d.norm();
+    if (length == 0) continue;
+    const double t = std::clamp(d.dot(p - s.a) / length, 0.0, length);
+    const double distance = (p - s.a - t / length * d).norm();
+    Nearest& best = nearest[static_cast<size_t>(kinds[s.passage])];
+    if (distance < best.distance_m) best = {distance, &s, s.at_m + t};
+  }
+  const auto [smooth, track, rubble] = nearest;
+  const auto against = [](const Nearest& a, const Nearest& b, const Nearest& c) {
+    return std::clamp((std::min(b.distance_m, c.distance_m) - a.distance_m) / blend_m, 0.0, 1.0);
+  };
+  if (track.piece && track.distance_m < std::min(smooth.distance_m, rubble.distance_m)) {
+    std::vector<Piece> own;
+    for (const Piece& s : near)
+      if (kinds[s.passage] == FloorKind::track) own.push_back(s);
+    return against(track, smooth, rubble) * track_on(own, p, seed);
+  }
+  if (rubble.piece && rubble.distance_m < std::min(smooth.distance_m, track.distance_m))
+    return against(rubble, smooth, track) * share_at(*rubble.piece, rubble.along_m) * rubble_height_m(p, seed);
+  return 0;
+}
+
+// Slope across of a bed that has settled unevenly: even values at equal distances, smooth between.
+double cross_level(double along_m, std::uint64_t seed, std::uint64_t track) {
+  const double at = along_m / settled_m, from = std::floor(at);
+  const double s = 0.5 - 0.5 * std::cos(std::numbers::pi * (at - from));
+  const auto value = [&](double k) {
+    return 2 * drawn(seed, 10, static_cast<std::int64_t>(k) + 1, static_cast<std::int64_t>(track)) - 1;
+  };
+  return cross_level_max * (value(from) * (1 - s) + value(from + 1) * s) / std::hypot(1 - s, s);
 }
 
 }  // namespace
@@ -116,11 +170,11 @@ double track_height_m(double along_m, double left_m, std::uint64_t seed, std::ui
     const auto u = [&](std::uint64_t what) { return drawn(seed, what, id, static_cast<std::int64_t>(track)); };
     // Each lies somewhat askew and sunk on one side.
     const double offset = along_m - k * tie_gap_m - 0.08 * (u(5) - 0.5) - 0.06 * (u(6) - 0.5) * left_m;
-    const double height = tie_m * (0.65 + 0.5 * u(7) + 0.9 * (u(8) - 0.5) * left_m / tie_half_length_m);
+    const double height = tie_m * (0.65 + 0.5 * u(7) + tie_tilt * (u(8) - 0.5) * left_m / tie_half_length_m);
     tie = std::max(tie, std::max(0.0, height) * plateau(offset, tie_half_width_m, flank_m) *
                             plateau(left_m, tie_half_length_m, flank_m));
   }
-  return std::max(tie, rail);
+  return std::max(tie, rail) + cross_level(along_m, seed, track) * left_m * plateau(left_m, tie_half_length_m, flank_m);
 }
 
 double rubble_height_m(const Vec2& p_W, std::uint64_t seed) {
@@ -130,17 +184,46 @@ double rubble_height_m(const Vec2& p_W, std::uint64_t seed) {
 Relief::Relief(const World& world, const Floor& floor, FloorKind kind, std::uint64_t seed)
     : world_(world), floor_(floor), kind_(kind), seed_(seed), tiles_(slots) {}
 
+Relief::Relief(const World& world, const Floor& floor, std::vector<FloorKind> kinds, std::uint64_t seed)
+    : Relief(world, floor, FloorKind::smooth, seed) {
+  kinds_ = std::move(kinds);
+  ADIT_CHECK(kinds_.size() == world.passages.size());
+}
+
+std::vector<FloorKind> draw_floor_kinds(const World& world, double track_share, double rubble_share,
+                                        std::uint64_t seed) {
+  const size_t n = world.passages.size();
+  std::vector<size_t> order(n);
+  std::iota(order.begin(), order.end(), size_t{0});
+  const auto lot = [&](size_t i) { return drawn(seed, 9, static_cast<std::int64_t>(i), 0); };
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return lot(a) < lot(b); });
+  double all = 0, before = 0;
+  for (const Passage& passage : world.passages) all += passage.length_m;
+  std::vector<FloorKind> kinds(n, FloorKind::smooth);
+  for (const size_t i : order) {  // by where its middle falls
+    const double at = (before + 0.5 * world.passages[i].length_m) / all;
+    before += world.passages[i].length_m;
+    kinds[i] = at < track_share                  ? FloorKind::track
+               : at < track_share + rubble_share ? FloorKind::rubble
+                                                 : FloorKind::smooth;
+  }
+  return kinds;
+}
+
 void Relief::make(Tile& tile) const {
   const Vec2 low(static_cast<double>(tile.x) * tile_m, static_cast<double>(tile.y) * tile_m);
-  std::vector<Stretch> near;
-  if (kind_ == FloorKind::track) near = stretches_near(world_, low + Vec2::Constant(tile_m / 2), tile_m + 1);
+  std::vector<Piece> near;
+  const Vec2 middle = low + Vec2::Constant(tile_m / 2);
+  if (kind_ == FloorKind::track) near = pieces_near(world_, middle, tile_m + 1);
+  if (!kinds_.empty()) near = pieces_near(world_, middle, tile_m + half_width_m);
   tile.height_m.assign((steps + 1) * (steps + 1), std::numeric_limits<float>::quiet_NaN());
   for (long j = 0; j <= steps; ++j)
     for (long i = 0; i <= steps; ++i) {
       const Vec2 p = low + step_m * Vec2(static_cast<double>(i), static_cast<double>(j));
       const std::optional<double> z = floor_.height_m(p);
       if (!z) continue;
-      const double lies = kind_ == FloorKind::track    ? track_on(near, p, seed_)
+      const double lies = !kinds_.empty()              ? mixed_on(near, kinds_, p, seed_)
+                          : kind_ == FloorKind::track  ? track_on(near, p, seed_)
                           : kind_ == FloorKind::rubble ? rubble_height_m(p, seed_)
                                                        : 0;
       tile.height_m[static_cast<size_t>(j * (steps + 1) + i)] = static_cast<float>(*z + lies);

@@ -13,7 +13,7 @@
 namespace adit {
 
 /// What lies on a mine's floor, finer than its mesh: the wheels meet it, the lasers do not see it.
-enum class FloorKind { smooth, track, rubble };
+enum class FloorKind { smooth, track, rubble };  // as Drive::ground numbers them
 
 /// Where a ball is nearest to the ground.
 struct Touch {
@@ -25,11 +25,15 @@ struct Touch {
 /// about the places asked for last is kept, 1.7 MB at most, whatever the size of the mine.
 ///   track    sleepers and rails along the passages' centre lines, half buried; none at junctions, which are planked
 ///   rubble   heaps of broken rock and stones everywhere
-/// It is a function of world, kind and seed alone.
+/// Where passages differ, each point has what the nearest passage has, which thins out towards junctions and towards
+/// passages that have something else.
+/// It is a function of world, kinds and seed alone.
 class Relief {
  public:
   /// @param world  and floor are kept by reference
   Relief(const World& world, const Floor& floor, FloorKind kind, std::uint64_t seed);
+  /// @param kinds  (passages)
+  Relief(const World& world, const Floor& floor, std::vector<FloorKind> kinds, std::uint64_t seed);
 
   /// Height of the ground at a point in plan; none where there is no floor.
   std::optional<double> height_m(const Vec2& p_W) const;
@@ -52,9 +56,14 @@ class Relief {
   const World& world_;
   const Floor& floor_;
   FloorKind kind_;
+  std::vector<FloorKind> kinds_;  // (passages) where they differ; else empty
   std::uint64_t seed_;
   mutable std::vector<Tile> tiles_;  // of the places asked for last
 };
+
+/// Passages drawn to have track or rubble, up to those shares of the passages' length; the others are smooth. (passages)
+std::vector<FloorKind> draw_floor_kinds(const World& world, double track_share, double rubble_share,
+                                        std::uint64_t seed);
 
 /// How high sleepers and rails of a straight track stand above its bed.
 /// @param along_m  from the track's begin; @param left_m of its middle; @param track  number of the track

@@ -27,10 +27,11 @@ struct DriveSettings {
   double robot_speed_mps = 0.15;  // of a vehicle that is not pushed
   double scan_every_m = 0;        // it stops so often for a scan; 0: never
   double scan_stop_s = 15;        // and stands so long
-  std::string ground = "smooth";  // what lies on the mesh's floor: smooth (nothing) | track | rubble
-  std::string commands;           // CSV file of what a joystick asked for; empty: along the route
-  int step_hz = 240;              // of the physics
-  int sample_hz = 120;            // of the path; divides step_hz
+  std::string ground = "smooth";  // what lies on the mesh's floor: smooth (nothing) | track | rubble | mixed
+  double track_share = 0.3, rubble_share = 0.2;  // of the passages' length, where mixed
+  std::string commands;                          // CSV file of what a joystick asked for; empty: along the route
+  int step_hz = 240;                             // of the physics
+  int sample_hz = 120;                           // of the path; divides step_hz
 };
 Fields fields(DriveSettings& settings);
 

@@ -55,9 +55,8 @@ class Ways {
 std::vector<Leg> tour(const World& world, const std::vector<char>& allowed, int start, double twice_share,
                       std::uint64_t seed);
 
-/// The line along legs, corners rounded; a leg driven straight back has a turn-about between, or, in place, goes back on
-/// its own line.
-std::vector<Vec2> line_of(const World& world, const std::vector<Leg>& legs, double turn_radius_m,
-                          bool turn_in_place = false);
+/// The route along legs, corners rounded. Between a leg and the same leg driven back there is a turn-about, a three-point
+/// turn, or the line goes back on itself, as settings.turn has it.
+Route route_along(const World& world, const std::vector<Leg>& legs, const RouteSettings& settings);
 
 }  // namespace adit

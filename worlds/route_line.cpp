@@ -11,6 +11,9 @@ namespace {
 constexpr double step_m = 0.25;
 constexpr double fine_m = 0.05;
 constexpr double rib_clearance_m = 0.75;  // of the middle of a turn-about's line
+// A three-point turn, of arcs of 60 degrees: what a vehicle's corners need across beside the arcs' own width, which is
+// their radius; ahead of the foremost point of the line; and the least radius.
+constexpr double swing_m = 2.6, nose_m = 1.5, tight_m = 0.5;
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -96,50 +99,92 @@ void add_turn_about(const Track& in, double from, double to, double radius, std:
   add_biarc(q + radius * left, -t, p, -in.direction(from), out);
 }
 
-std::vector<Vec2> evenly(const std::vector<Vec2>& points) {
+// Forward to one side, tail first to the other, forward again: it ends where it began, the other way round. Marks the
+// points at which the direction changes.
+void add_three_point_turn(const Track& in, double at, double radius, std::vector<Vec2>& out,
+                          std::vector<size_t>& shifts) {
+  const Vec2 p = in.at(at), t = in.direction(at), left(-t.y(), t.x());
+  const auto place = [&](double ahead, double aside) -> Vec2 { return p + radius * (ahead * t + aside * left); };
+  const auto toward = [&](double rad) -> Vec2 { return std::cos(rad) * t + std::sin(rad) * left; };
+  constexpr double third = std::numbers::pi / 3;
+  const double reach = std::sin(third);
+  add_arc(p, t, place(reach, 0.5), out);
+  shifts.push_back(out.size() - 1);
+  add_arc(place(reach, 0.5), -toward(third), place(reach, -0.5), out);
+  shifts.push_back(out.size() - 1);
+  add_arc(place(reach, -0.5), toward(2 * third), p, out);
+}
+
+void add_evenly(const std::vector<Vec2>& points, std::vector<Vec2>& line) {
   const Track track(points);
   const int n = std::max(1, static_cast<int>(std::lround(track.length() / step_m)));
-  std::vector<Vec2> line;
-  for (int k = 0; k <= n; ++k) line.push_back(track.at(track.length() * k / n));
-  return line;
+  for (int k = line.empty() ? 0 : 1; k <= n; ++k) line.push_back(track.at(track.length() * k / n));
+}
+
+// Points at even distances between the shifts, every second stretch driven backwards.
+Route evenly(const std::vector<Vec2>& points, const std::vector<size_t>& shifts) {
+  Route route;
+  auto from = points.begin();
+  for (size_t k = 0; k <= shifts.size(); ++k) {
+    const auto to = k < shifts.size() ? points.begin() + static_cast<std::ptrdiff_t>(shifts[k]) : points.end() - 1;
+    const int first = static_cast<int>(route.line.size()) - 1;
+    add_evenly({from, to + 1}, route.line);
+    if (k % 2) route.backwards.push_back({first, static_cast<int>(route.line.size()) - 1});
+    from = to;
+  }
+  return route;
+}
+
+// What a leg leaves of its length for what follows it, from its end: where the turn or the corner begins.
+struct Corner {
+  double radius, tangent_m, drift_m;
+};
+
+Corner corner_of(const Passage& passage, const Track& track, const Track* next, bool about, const RouteSettings& s) {
+  if (about && s.turn == "three_point") {
+    const double radius = std::clamp(passage.width_m - swing_m, tight_m, std::max(tight_m, s.turn_radius_m));
+    return {radius, std::min(0.87 * radius + nose_m, 0.6 * track.length()), 0};
+  }
+  if (about) {
+    const double radius = std::min(s.turn_radius_m, 0.5 * passage.width_m - rib_clearance_m);
+    return {radius, std::min(2 + radius, 0.3 * track.length()), std::min(3.0, 0.3 * track.length())};
+  }
+  return {s.turn_radius_m, next ? tangent_m(track, *next, s.turn_radius_m) : 0, 0};
 }
 
 }  // namespace
 
-std::vector<Vec2> line_of(const World& world, const std::vector<Leg>& legs, double turn_radius_m, bool turn_in_place) {
+Route route_along(const World& world, const std::vector<Leg>& legs, const RouteSettings& s) {
   std::vector<Track> tracks;
   for (const Leg& leg : legs) tracks.push_back(track_of(world, leg));
   std::vector<Vec2> points{tracks.front().at(0)};
+  std::vector<size_t> shifts;
   double begin = 0;
   for (size_t i = 0; i < legs.size(); ++i) {
     const Track& track = tracks[i];
-    const bool last = i + 1 == legs.size();
-    const bool about = !last && legs[i].passage == legs[i + 1].passage && legs[i].forward != legs[i + 1].forward;
-    const double radius = about
-                              ? std::min(turn_radius_m, 0.5 * world.passages[legs[i].passage].width_m - rib_clearance_m)
-                              : turn_radius_m;
-    const double tangent = last    ? 0
-                           : about ? std::min(2 + radius, 0.3 * track.length())
-                                   : tangent_m(track, tracks[i + 1], radius);
-    const double drift = about ? std::min(3.0, 0.3 * track.length()) : 0;  // along which one moves over to one side
+    const Track* next = i + 1 < legs.size() ? &tracks[i + 1] : nullptr;
+    const bool about = next && legs[i].passage == legs[i + 1].passage && legs[i].forward != legs[i + 1].forward;
+    const auto [radius, tangent, drift] = corner_of(world.passages[legs[i].passage], track, next, about, s);
     const double end = track.length() - tangent - drift;
-    for (double s = begin + fine_m; s < end; s += fine_m) points.push_back(track.at(s));
+    for (double at = begin + fine_m; at < end; at += fine_m) points.push_back(track.at(at));
     points.push_back(track.at(end));
-    if (about && turn_in_place) {
+    begin = tangent + drift;
+    if (about && s.turn == "three_point") {
+      add_three_point_turn(track, end, radius, points, shifts);
+    } else if (about && s.turn == "in_place") {
       points.push_back(track.at(end + drift));
-      for (double s = end + drift - fine_m; s > end; s -= fine_m) points.push_back(track.at(s));
+      for (double at = end + drift - fine_m; at > end; at -= fine_m) points.push_back(track.at(at));
       points.push_back(track.at(end));
-      begin = tangent + drift;
     } else if (about) {
       add_turn_about(track, end, end + drift, radius, points);
-      begin = tangent + drift;
-    } else if (!last) {
-      add_biarc(track.at(end), track.direction(end), tracks[i + 1].at(tangent), tracks[i + 1].direction(tangent),
-                points);
-      begin = tangent;
+    } else if (next) {
+      add_biarc(track.at(end), track.direction(end), next->at(tangent), next->direction(tangent), points);
     }
   }
-  return evenly(points);
+  Route route = evenly(points, shifts);
+  for (const Leg& leg : legs) route.passages.push_back(leg.passage);
+  for (size_t i = 1; i < route.line.size(); ++i) route.length_m += (route.line[i] - route.line[i - 1]).norm();
+  return route;
 }
 
 }  // namespace adit

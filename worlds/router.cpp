@@ -55,16 +55,17 @@ std::vector<Leg> tour_both_ways(const World& world, const std::vector<char>& cor
   return first;
 }
 
-// Empty where none is to be avoided.
+// Neither blocked nor to be avoided; empty where all passages are allowed.
 std::vector<char> allowed_of(const World& world, const RouteSettings& s) {
-  if (s.avoid.empty()) return {};
-  std::vector<char> allowed(world.passages.size(), 1);
+  std::vector<char> allowed;
+  for (const Passage& passage : world.passages) allowed.push_back(!passage.blocked);
   for (const int id : s.avoid) {
     if (id < 0 || id >= static_cast<int>(world.passages.size()))
       throw Error("route.avoid: there is no passage " + std::to_string(id) + "; this mine has 0 to " +
                   std::to_string(world.passages.size() - 1));
     allowed[id] = 0;
   }
+  if (std::find(allowed.begin(), allowed.end(), 0) == allowed.end()) allowed.clear();
   return allowed;
 }
 
@@ -72,7 +73,7 @@ std::vector<Leg> way_to(const World& world, int from, int to, const std::vector<
   const Ways ways(world, from, allowed);
   if (!std::isfinite(ways.distance_m(to)))
     throw Error(std::string(key) + ": junction " + std::to_string(to) + " cannot be reached from " +
-                std::to_string(from) + " without the passages of route.avoid");
+                std::to_string(from) + " without the passages that are blocked or in route.avoid");
   return ways.to(to);
 }
 
@@ -97,7 +98,7 @@ std::vector<Leg> all_passages(const World& world, const RouteSettings& s, std::u
   if (s.start >= 0) check_junction(world, "route.start", s.start);
   const std::vector<char> part = s.start >= 0 ? reached(world, s.start, allowed) : greatest_part(world, allowed);
   const std::vector<int> among = junctions_of(world, part);
-  if (among.empty()) throw Error("route.avoid: leaves no passage to drive");
+  if (among.empty()) throw Error("route.avoid: with what is blocked it leaves no passage to drive");
   const int start = s.start >= 0 ? s.start : among[drawn_start(among.size(), seed)];
   return tour(world, part, start, 0, seed);
 }
@@ -134,7 +135,8 @@ std::vector<Leg> loops(const World& world, const RouteSettings& s, std::uint64_t
   const std::vector<char> core = allowed.empty() ? two_core(world) : greatest_part(world, two_core(world, allowed));
   const std::vector<int> among = junctions_of(world, core);
   if (among.empty())
-    throw Error("route.mode = \"loops\": this mine has no loop; use \"there_and_back\" or \"waypoints\"");
+    throw Error(
+        "route.mode = \"loops\": this mine has no loop that is free; use \"all\", \"there_and_back\" or \"waypoints\"");
   std::vector<int> starts = among;
   std::rotate(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(drawn_start(starts.size(), seed)),
               starts.end());
@@ -172,10 +174,15 @@ std::vector<Leg> by_waypoints(const World& world, const RouteSettings& s) {
 std::vector<Leg> there_and_back(const World& world, const RouteSettings& s, std::uint64_t seed) {
   const std::vector<char> allowed = allowed_of(world, s);
   std::vector<int> among = junctions_of(world, two_core(world, allowed));
-  if (among.empty())
-    for (size_t j = 0; j < world.junctions.size(); ++j)
-      if (world.junctions[j].degree() == 1) among.push_back(static_cast<int>(j));
+  if (among.empty()) {  // no loop: from a dead end
+    std::vector<int> degree(world.junctions.size(), 0);
+    for (size_t i = 0; i < world.passages.size(); ++i)
+      if (allowed.empty() || allowed[i]) ++degree[world.passages[i].a], ++degree[world.passages[i].b];
+    for (size_t j = 0; j < degree.size(); ++j)
+      if (degree[j] == 1) among.push_back(static_cast<int>(j));
+  }
   if (s.start >= 0) check_junction(world, "route.start", s.start);
+  if (s.start < 0 && among.empty()) throw Error("route.avoid: with what is blocked it leaves no passage to drive");
   const int start = s.start >= 0 ? s.start : among[drawn_start(among.size(), seed)];
   const Ways ways(world, start, allowed);
   int farthest = start;
@@ -183,7 +190,9 @@ std::vector<Leg> there_and_back(const World& world, const RouteSettings& s, std:
     if (std::isfinite(ways.distance_m(static_cast<int>(j))) &&
         ways.distance_m(static_cast<int>(j)) > ways.distance_m(farthest))
       farthest = static_cast<int>(j);
-  if (farthest == start) throw Error("route.avoid: leaves no passage to drive from junction " + std::to_string(start));
+  if (farthest == start)
+    throw Error("route.avoid: with what is blocked it leaves no passage to drive from junction " +
+                std::to_string(start));
   std::vector<Leg> legs = ways.to(farthest);
   for (size_t i = legs.size(); i > 0; --i) legs.push_back({legs[i - 1].passage, !legs[i - 1].forward});
   return legs;
@@ -198,11 +207,7 @@ Route plan_route(const World& world, const RouteSettings& s, std::uint64_t seed)
                                 : s.mode == "around"    ? around(world, s)
                                 : s.mode == "waypoints" ? by_waypoints(world, s)
                                                         : there_and_back(world, s, seed);
-  Route route;
-  route.line = line_of(world, legs, s.turn_radius_m, s.turn == "in_place");
-  for (const Leg& leg : legs) route.passages.push_back(leg.passage);
-  for (size_t i = 1; i < route.line.size(); ++i) route.length_m += (route.line[i] - route.line[i - 1]).norm();
-  return route;
+  return route_along(world, legs, s);
 }
 
 }  // namespace adit

@@ -164,7 +164,7 @@ struct RouteSettings {
   std::vector<int> waypoints;   // junction ids, for mode waypoints
   std::vector<int> pillars;     // pillar ids, for mode around
   std::vector<int> avoid;       // passage ids that are not driven: blocked, or full of things
-  std::string turn = "arc";     // where the route runs back on itself: arc | in_place
+  std::string turn = "arc";     // where the route runs back on itself: arc | three_point | in_place
   double twice_share = 0.25;    // for mode loops: least share of the way on passages that are driven twice or more
   double turn_radius_m = 1.75;  // of the arcs that round corners, where there is room
 };
@@ -177,8 +177,9 @@ Fields fields(RouteSettings& settings);
 ///   around          the loops about the pillars named, one after the other, joined by shortest ways
 ///   waypoints       shortest ways between the junctions given
 ///   there_and_back  from the start to the junction farthest from it, round, and back
-/// A turn is an arc within the passage, or the line runs back on itself for a vehicle that turns on the spot. Passages
-/// to avoid are left out, with what cannot be reached without them.
+/// A turn is an arc within the passage, a three-point turn whose middle stretch is driven backwards, or the line runs
+/// back on itself for a vehicle that turns on the spot. Passages that are blocked or to be avoided are left out, with what
+/// cannot be reached without them.
 /// @throws Error for a junction, pillar or passage that is not there, two waypoints that are equal, a mine without loops in mode loops
 Route plan_route(const World& world, const RouteSettings& settings, std::uint64_t seed);
 

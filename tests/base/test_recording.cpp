@@ -64,7 +64,8 @@ Truth small_truth() {
   truth.drive.end = DriveEnd::stuck;
   truth.drive.cause = "a wheel hangs at (3.0, 4.0)";
   truth.drive.driven_m = 17.25;
-  truth.drive.route = {.line = {{0, 0}, {1, 0.5}}, .passages = {3, 1, 3}, .length_m = 20};
+  truth.drive.route = {.line = {{0, 0}, {1, 0.5}}, .passages = {3, 1, 3}, .length_m = 20, .backwards = {{0, 1}}};
+  truth.drive.ground = {0, 2, 1, 0};
   for (int i = 0; i < 50; ++i) {
     truth.drive.path.stamp_s.push_back(i / 120.0);
     truth.drive.path.X_WB.push_back(pose_of({0.01 * i, 1, 2}, 0.02 * i, 0.1, -0.1));
@@ -167,6 +168,10 @@ TEST(Recording, ATruthComesBackAsItWas) {
   EXPECT_EQ(truth.drive.route.line, back.drive.route.line);
   EXPECT_EQ(truth.drive.route.passages, back.drive.route.passages);
   EXPECT_EQ(truth.drive.route.length_m, back.drive.route.length_m);
+  ASSERT_EQ(back.drive.route.backwards.size(), 1u);
+  EXPECT_EQ(back.drive.route.backwards[0].first, 0);
+  EXPECT_EQ(back.drive.route.backwards[0].last, 1);
+  EXPECT_EQ(truth.drive.ground, back.drive.ground);
   EXPECT_EQ(truth.drive.path.stamp_s, back.drive.path.stamp_s);
   for (size_t i = 0; i < truth.drive.path.size(); ++i)
     EXPECT_EQ(truth.drive.path.X_WB[i].matrix(), back.drive.path.X_WB[i].matrix());

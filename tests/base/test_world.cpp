@@ -15,7 +15,8 @@ std::string folder(const std::string& name) {
 }
 
 TEST(World, AFolderGivesTheSameWorldBack) {
-  const World world = ring_world(20, 3, 2, 0.7);
+  World world = ring_world(20, 3, 2, 0.7);
+  world.passages[2].blocked = true;
   save_world(folder("ring"), world);
   const World back = load_world(folder("ring"));
   EXPECT_EQ(world_hash(back), world_hash(world));
@@ -26,6 +27,7 @@ TEST(World, AFolderGivesTheSameWorldBack) {
   for (size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(back.passages[i].a, world.passages[i].a);
     EXPECT_EQ(back.passages[i].width_m, world.passages[i].width_m);
+    EXPECT_EQ(back.passages[i].blocked, i == 2);
     EXPECT_EQ(back.passages[i].centre_line, world.passages[i].centre_line);
     EXPECT_EQ(back.junctions[i].passages, world.junctions[i].passages);
     EXPECT_EQ(back.junctions[i].p_W, world.junctions[i].p_W);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace adit {
 
@@ -58,6 +59,26 @@ Route route_through(const std::vector<Vec2>& corners, double radius_m) {
     for (int i = 1; i <= n; ++i) route.line.push_back(centre + Eigen::Rotation2Dd(turn * i / n) * (begin - centre));
   }
   if (corners.size() > 1) straight_to(corners.back());
+  for (size_t i = 1; i < route.line.size(); ++i) route.length_m += (route.line[i] - route.line[i - 1]).norm();
+  return route;
+}
+
+Route three_point_route(double from_m, double turn_at_m, double radius_m) {
+  Route route = route_through({{from_m, 0}, {turn_at_m, 0}}, 0);
+  const double third = std::numbers::pi / 3;
+  const int n = std::max(3, static_cast<int>(std::ceil(radius_m * third / 0.25)));
+  Pose2 X_WA{turn_at_m, 0, 0};
+  for (const double way : {1.0, -1.0, 1.0}) {
+    const int first = static_cast<int>(route.line.size()) - 1;
+    for (int k = 1; k <= n; ++k) {  // the nose turns left all the time
+      const double phi = third / n, chord = way * 2 * radius_m * std::sin(phi / 2);
+      X_WA = X_WA * Pose2{chord * std::cos(phi / 2), chord * std::sin(phi / 2), phi};
+      route.line.push_back(X_WA.position());
+    }
+    if (way < 0) route.backwards.push_back({first, static_cast<int>(route.line.size()) - 1});
+  }
+  for (double x = turn_at_m - 0.25; x >= from_m; x -= 0.25) route.line.push_back({x, 0});
+  route.length_m = 0;
   for (size_t i = 1; i < route.line.size(); ++i) route.length_m += (route.line[i] - route.line[i - 1]).norm();
   return route;
 }

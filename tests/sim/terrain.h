@@ -20,6 +20,9 @@ void add_wall(World& world, double x_m, double y_low_m, double y_high_m, double 
 /// A route through the points, its corners rounded with arcs of radius_m (0: sharp), sampled every 0.25 m.
 Route route_through(const std::vector<Vec2>& corners, double radius_m);
 
+/// Along x from from_m to turn_at_m, a three-point turn of arcs of 60 degrees, and back.
+Route three_point_route(double from_m, double turn_at_m, double radius_m);
+
 /// Greatest distance of B's origin from the route's line.
 double cross_track_m(const Trajectory& path, const Route& route);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/rng.h"
 #include "sim/sim.h"
 #include "tests/sim/terrain.h"
@@ -64,6 +65,32 @@ TEST(Drive, TurnsRoundWhereTheRouteRunsBackOnItself) {
   EXPECT_NEAR(d.driven_m, route.length_m, 0.02);
   EXPECT_LT(cross_track_m(d.path, route), 1.1);  // a circle 0.8 m wide at the far end, run into by its half
   EXPECT_LT((d.path.X_WB.back().translation().head<2>()).norm(), 0.15);
+}
+
+// In passages where an arc of the tightest that can be driven does not fit.
+TEST(Drive, TurnsInThreeMovesInADeadEndWithTheMiddleOneTailFirst) {
+  struct Case {
+    const char* vehicle;
+    double width_m, radius_m;
+  };
+  for (const auto& [name, width_m, radius_m] : {Case{"cart", 2.6, 0.55}, Case{"groundhog", 3.4, 0.8}}) {
+    const World tunnel = tunnel_world(12, width_m, 2, 0.5);
+    const Route route = three_point_route(1.5, 8.5, radius_m);
+    DriveSettings settings = brisk();
+    settings.robot_speed_mps = 0.3;
+    const Drive d = drive(tunnel, route, load_vehicle(name), settings, 4);
+    ASSERT_EQ(d.end, DriveEnd::finished) << d.cause;
+    EXPECT_NEAR(d.driven_m, route.length_m, 0.02);
+    double back_m = 0, turned_rad = 0;
+    for (size_t i = 1; i < d.path.size(); ++i) {
+      const Pose& X = d.path.X_WB[i];
+      back_m += std::max(0.0, -X.linear().col(0).dot(X.translation() - d.path.X_WB[i - 1].translation()));
+      turned_rad += wrap_angle(flatten(X).yaw_rad - flatten(d.path.X_WB[i - 1]).yaw_rad);
+    }
+    EXPECT_NEAR(back_m, radius_m * std::numbers::pi / 3, 0.15) << name;  // the middle arc alone
+    EXPECT_NEAR(turned_rad, std::numbers::pi, 0.1) << name;  // to the left by half a turn, and not back again
+    EXPECT_LT((d.path.X_WB.back().translation() - d.path.X_WB.front().translation()).norm(), 0.15) << name;
+  }
 }
 
 TEST(Drive, BeginsAtRestOnTheRoutesFirstPointHeadingAlongIt) {
@@ -156,6 +183,27 @@ TEST(Drive, SameSeedGivesTheSameBitsAndAnotherSeedDoesNot) {
     ASSERT_EQ(a.path.X_WB[i].matrix(), b.path.X_WB[i].matrix()) << "pose " << i;
   const Drive c = drive(world, route, cart, brisk(), 11);
   EXPECT_NE(a.path.X_WB.back().matrix(), c.path.X_WB.back().matrix());
+}
+
+TEST(Drive, DrivesAtTheSameTimeOnSevenThreadsGiveTheBitsOfOneAlone) {
+  const World world = plain([](const Vec2& p) { return 0.02 * std::sin(3 * p.x() + 2 * p.y()); });
+  const Route route = route_through({{0, 0}, {6, 0}, {9, 3}}, 1.5);
+  const auto driven = [&](const char* vehicle) {
+    DriveSettings settings = brisk();
+    settings.robot_speed_mps = 0.5;
+    return drive(world, route, load_vehicle(vehicle), settings, 10).path;
+  };
+  const Trajectory alone[2] = {driven("cart"), driven("groundhog")};
+  set_threads(7);
+  std::vector<Trajectory> together(7);
+  parallel_for(together.size(), [&](size_t i) { together[i] = driven(i % 2 ? "groundhog" : "cart"); });
+  set_threads(0);
+  for (size_t i = 0; i < together.size(); ++i) {
+    const Trajectory& one = alone[i % 2];
+    ASSERT_EQ(together[i].size(), one.size()) << "drive " << i;
+    for (size_t k = 0; k < one.size(); ++k)
+      ASSERT_EQ(together[i].X_WB[k].matrix(), one.X_WB[k].matrix()) << "drive " << i;
+  }
 }
 
 TEST(Drive, IsBlockedByAWallAndSaysWhere) {

@@ -24,7 +24,7 @@ Walk walk(const DriveSettings& settings, std::uint64_t seed, double length_m, do
   for (std::int64_t k = 0; k < 4'000'000; ++k) {
     walk.time_s = static_cast<double>(k) * step_s;
     if (pusher.done(walk.time_s)) return walk;
-    const Intent intent = pusher.want(walk.time_s, step_s, walk.way_m, curvature);
+    const Intent intent = pusher.want(walk.time_s, step_s, walk.way_m, {.curvature_ahead = curvature});
     walk.way_m += intent.speed_mps * step_s;
     if (intent.hold) {
       if (gap > 0) walk.gaps_m.push_back(gap);

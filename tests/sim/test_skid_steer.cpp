@@ -121,8 +121,7 @@ TEST(SkidSteer, ClimbsARampAtTheSpeedOfItsWheels) {
   Physics physics(world.mesh, robot, stand_on(height_of(Floor(world.mesh)), robot, {0, 0}, 0), step_s);
   settled(physics, 1);
   for (int k = 0; k < 2 * 240; ++k) physics.step({.left_mps = 0.15, .right_mps = 0.15});
-  // The tyres roll 4 % smaller than they are, and creep by what gravity adds in a step.
-  EXPECT_NEAR(physics.motion().v_W.norm(), 0.15, 0.15 * 0.04 + g * std::sin(10 * deg) * step_s);
+  EXPECT_NEAR(physics.motion().v_W.norm() / 0.15, 1, 0.03);
 }
 
 TEST(SkidSteer, StandsWithoutATremble) {

@@ -197,6 +197,54 @@ TEST(Router, TurnsInPlaceRunBackOnTheirOwnLine) {
   EXPECT_LT((route.line.back() - route.line.front()).norm(), 1e-6);
 }
 
+// Arcs of 60 degrees and radius R: sqrt(3)/2 R ahead and R/2 to either side, back where it began.
+TEST(Router, AThreePointTurnIsThreeArcsTheMiddleOneDrivenBackwards) {
+  for (const double width : {2.8, 3.7, 6.0}) {
+    const World tunnel = tunnel_world(60, width, 2);
+    RouteSettings s;
+    s.mode = "there_and_back";
+    s.turn = "three_point";
+    s.start = 0;
+    const Route route = plan_route(tunnel, s, 1);
+    const double radius = std::clamp(width - 2.6, 0.5, s.turn_radius_m);
+    ASSERT_EQ(route.backwards.size(), 1u);
+    const auto [first, last] = route.backwards[0];
+    const auto turn_at = [&](int i) {
+      const Vec2 in = route.line[i] - route.line[i - 1], out = route.line[i + 1] - route.line[i];
+      return in.dot(out) / in.norm() / out.norm();
+    };
+    for (int i = 1; i + 1 < static_cast<int>(route.line.size()); ++i)
+      EXPECT_EQ(turn_at(i) < 0, i == first || i == last) << "point " << i << " of width " << width;
+    EXPECT_NEAR(route.line[first].y(), radius / 2, 1e-6);
+    EXPECT_NEAR(route.line[last].y(), -radius / 2, 1e-6);
+    EXPECT_NEAR(route.line[first].x(), route.line[last].x(), 1e-6);
+    EXPECT_LT(route.line[first].x(), 60 - 1.4);
+    EXPECT_LT((route.line.back() - route.line.front()).norm(), 1e-6);
+  }
+}
+
+TEST(Router, RoutesLeaveOutWhatIsBlocked) {
+  World world = mini();
+  const std::vector<char> core = two_core(world);
+  const int blocked = static_cast<int>(std::find(core.begin(), core.end(), 1) - core.begin());
+  world.passages[static_cast<size_t>(blocked)].blocked = true;
+  RouteSettings avoiding;
+  avoiding.avoid = {blocked};
+  for (const char* mode : {"loops", "all", "there_and_back"}) {
+    RouteSettings s;
+    s.mode = avoiding.mode = mode;
+    const Route route = plan_route(world, s, 3);
+    EXPECT_EQ(std::count(route.passages.begin(), route.passages.end(), blocked), 0) << mode;
+    EXPECT_EQ(route.passages, plan_route(mini(), avoiding, 3).passages) << mode;
+  }
+  for (Passage& passage : world.passages) passage.blocked = true;
+  for (const char* mode : {"loops", "all", "there_and_back"}) {
+    RouteSettings s;
+    s.mode = mode;
+    EXPECT_THROW(plan_route(world, s, 3), Error) << mode;
+  }
+}
+
 TEST(Router, AroundDrivesTheLoopThatEnclosesThePillarAndNoOther) {
   const World& world = mini();
   ASSERT_GT(world.pillars.size(), 1u);
