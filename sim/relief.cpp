@@ -15,7 +15,7 @@ namespace {
 
 // Old haulage track, half buried: gauge 42 in.
 constexpr double tie_gap_m = 0.6, tie_half_width_m = 0.04, tie_half_length_m = 0.85, tie_m = 0.04, flank_m = 0.17;
-constexpr double tie_tilt = 1.6;                           // spread between a sleeper's ends, of its height
+constexpr double tie_tilt = 1.6;                            // spread between a sleeper's ends, of its height
 constexpr double settled_m = 1.5, cross_level_max = 0.105;  // over which the bed settled; slope across
 constexpr double gauge_m = 1.067, rail_half_width_m = 0.03, rail_m = 0.03, rail_flank_m = 0.08;
 constexpr double planked_m = 2.5, ramp_m = 1.5;  // from a junction, and then up to the full height

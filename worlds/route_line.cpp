@@ -10,6 +10,7 @@ namespace {
 
 constexpr double step_m = 0.25;
 constexpr double fine_m = 0.05;
+constexpr double off_face_m = 1.3;        // from a dead end's, a route begins and ends: a vehicle stands there
 constexpr double rib_clearance_m = 0.75;  // of the middle of a turn-about's line
 // A three-point turn, of arcs of 60 degrees: what a vehicle's corners need across beside the arcs' own width, which is
 // their radius; ahead of the foremost point of the line; and the least radius.
@@ -142,8 +143,9 @@ struct Corner {
 
 Corner corner_of(const Passage& passage, const Track& track, const Track* next, bool about, const RouteSettings& s) {
   if (about && s.turn == "three_point") {
-    const double radius = std::clamp(passage.width_m - swing_m, tight_m, std::max(tight_m, s.turn_radius_m));
-    return {radius, std::min(0.87 * radius + nose_m, 0.6 * track.length()), 0};
+    const double room = std::min(passage.width_m - swing_m, (0.9 * track.length() - nose_m) / 0.87);
+    const double radius = std::clamp(room, tight_m, std::max(tight_m, s.turn_radius_m));
+    return {radius, std::min(0.87 * radius + nose_m, 0.9 * track.length()), 0};
   }
   if (about) {
     const double radius = std::min(s.turn_radius_m, 0.5 * passage.width_m - rib_clearance_m);
@@ -157,15 +159,19 @@ Corner corner_of(const Passage& passage, const Track& track, const Track* next, 
 Route route_along(const World& world, const std::vector<Leg>& legs, const RouteSettings& s) {
   std::vector<Track> tracks;
   for (const Leg& leg : legs) tracks.push_back(track_of(world, leg));
-  std::vector<Vec2> points{tracks.front().at(0)};
+  const auto off_face = [&](int junction, const Track& track) {
+    return world.junctions[static_cast<size_t>(junction)].degree() == 1 ? std::min(off_face_m, 0.3 * track.length())
+                                                                        : 0;
+  };
+  double begin = off_face(from_of(world, legs.front()), tracks.front());
+  std::vector<Vec2> points{tracks.front().at(begin)};
   std::vector<size_t> shifts;
-  double begin = 0;
   for (size_t i = 0; i < legs.size(); ++i) {
     const Track& track = tracks[i];
     const Track* next = i + 1 < legs.size() ? &tracks[i + 1] : nullptr;
     const bool about = next && legs[i].passage == legs[i + 1].passage && legs[i].forward != legs[i + 1].forward;
     const auto [radius, tangent, drift] = corner_of(world.passages[legs[i].passage], track, next, about, s);
-    const double end = track.length() - tangent - drift;
+    const double end = track.length() - (next ? tangent + drift : off_face(to_of(world, legs[i]), track));
     for (double at = begin + fine_m; at < end; at += fine_m) points.push_back(track.at(at));
     points.push_back(track.at(end));
     begin = tangent + drift;

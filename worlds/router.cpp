@@ -92,12 +92,24 @@ std::vector<char> greatest_part(const World& world, const std::vector<char>& of)
   return best;
 }
 
+// A dead end shorter than it is wide is seen from its junction, and no vehicle turns in it.
+bool is_niche(const World& world, const Passage& passage) {
+  const auto dead_end = [&](int j) { return world.junctions[static_cast<size_t>(j)].degree() == 1; };
+  return passage.length_m < passage.width_m && dead_end(passage.a) != dead_end(passage.b);
+}
+
 std::vector<Leg> all_passages(const World& world, const RouteSettings& s, std::uint64_t seed) {
   std::vector<char> allowed = allowed_of(world, s);
   if (allowed.empty()) allowed.assign(world.passages.size(), 1);
   if (s.start >= 0) check_junction(world, "route.start", s.start);
+  for (size_t i = 0; i < allowed.size(); ++i) {
+    const Passage& passage = world.passages[i];
+    if (is_niche(world, passage) && passage.a != s.start && passage.b != s.start) allowed[i] = 0;
+  }
   const std::vector<char> part = s.start >= 0 ? reached(world, s.start, allowed) : greatest_part(world, allowed);
-  const std::vector<int> among = junctions_of(world, part);
+  std::vector<int> among = junctions_of(world, part);
+  const auto dead_end = [&](int j) { return world.junctions[static_cast<size_t>(j)].degree() < 2; };
+  if (!std::all_of(among.begin(), among.end(), dead_end)) std::erase_if(among, dead_end);
   if (among.empty()) throw Error("route.avoid: with what is blocked it leaves no passage to drive");
   const int start = s.start >= 0 ? s.start : among[drawn_start(among.size(), seed)];
   return tour(world, part, start, 0, seed);

@@ -173,13 +173,14 @@ Fields fields(RouteSettings& settings);
 /// A line to drive, following passages' centre lines, corners rounded by arcs, a point every 0.25 m.
 ///   loops           every passage that lies on a loop or between loops once at least, dead ends left out; twice_share
 ///                   of the way is driven twice, some of it in the same and some in the opposite direction; no U-turn
-///   all             every passage once at least, dead ends too, by a short closed tour; as many U-turns as dead ends
+///   all             every passage once at least, dead ends too unless they are shorter than wide, by a short closed
+///                   tour; as many U-turns as dead ends
 ///   around          the loops about the pillars named, one after the other, joined by shortest ways
 ///   waypoints       shortest ways between the junctions given
 ///   there_and_back  from the start to the junction farthest from it, round, and back
 /// A turn is an arc within the passage, a three-point turn whose middle stretch is driven backwards, or the line runs
 /// back on itself for a vehicle that turns on the spot. Passages that are blocked or to be avoided are left out, with what
-/// cannot be reached without them.
+/// cannot be reached without them. At a dead end a route begins and ends 1.3 m off the face.
 /// @throws Error for a junction, pillar or passage that is not there, two waypoints that are equal, a mine without loops in mode loops
 Route plan_route(const World& world, const RouteSettings& settings, std::uint64_t seed);
 
