@@ -178,11 +178,35 @@ Mount mount_of(const std::string& name, const Lines& device) {
 
 }  // namespace
 
+namespace {
+
+// What a log's lines add up to.
+struct Devices {
+  Lines front, rear;
+  Trajectory true_path;
+  double max_m = lms_max_m;
+};
+
+void read_line(Words& words, Devices& d) {
+  const std::string_view name = words.word();
+  if (name == "FLASER") read_old(words, d.front, d.max_m);
+  if (name == "RLASER") read_old(words, d.rear, d.max_m);
+  if (name == "ROBOTLASER1") read_new(words, d.front);
+  if (name == "ROBOTLASER2") read_new(words, d.rear);
+  if (name == "PARAM" && words.left() >= 2 && words.word() == "robot_front_laser_max") d.max_m = words.number();
+  if (name == "TRUEPOS") {
+    const double x = words.number(), y = words.number(), yaw = words.number();
+    for (int k = 0; k < 3; ++k) words.number();
+    append_pose(d.true_path, stamp_of(words), planar(x, y, yaw));
+  }
+}
+
+}  // namespace
+
 CarmenLog read_carmen(const std::string& file) {
   const std::string text = read_text(file);
   CarmenLog out;
-  Lines front, rear;
-  double max_m = lms_max_m;
+  Devices devices;
   size_t number = 0;
   for (size_t at = 0; at < text.size();) {
     const size_t end = std::min(text.find('\n', at), text.size());
@@ -192,26 +216,23 @@ CarmenLog read_carmen(const std::string& file) {
     if (line.empty() || line[0] == '#') continue;
     Words words(line, file + ":" + std::to_string(number));
     if (words.left() == 0) continue;
-    const std::string_view name = words.word();
-    if (name == "FLASER") read_old(words, front, max_m);
-    if (name == "RLASER") read_old(words, rear, max_m);
-    if (name == "ROBOTLASER1") read_new(words, front);
-    if (name == "ROBOTLASER2") read_new(words, rear);
-    if (name == "PARAM" && words.left() >= 2 && words.word() == "robot_front_laser_max") max_m = words.number();
-    if (name == "TRUEPOS") {
-      const double x = words.number(), y = words.number(), yaw = words.number();
-      for (int k = 0; k < 3; ++k) words.number();
-      append_pose(out.true_path, stamp_of(words), planar(x, y, yaw));
+    try {
+      read_line(words, devices);
+    } catch (const Error& e) {
+      const bool breaks_off = end == text.size();
+      if (!breaks_off) throw;
+      out.notes.push_back("the last line is left out: " + std::string(e.what()));
     }
   }
+  out.true_path = std::move(devices.true_path);
   out.log.rig.name = "CARMEN";
-  for (const auto& [name, device] : {std::pair{"front", &front}, {"rear", &rear}}) {
+  for (const auto& [name, device] : {std::pair{"front", &devices.front}, {"rear", &devices.rear}}) {
     if (device->scans.size() == 0) continue;
     out.log.rig.mounts.push_back(mount_of(name, *device));
     out.log.scans.push_back(device->scans);
   }
   if (out.log.scans.empty()) throw Error(file + ": has no FLASER, RLASER, ROBOTLASER1 or ROBOTLASER2 line");
-  out.odometry = front.scans.size() > 0 ? front.odometry : rear.odometry;
+  out.odometry = devices.front.scans.size() > 0 ? devices.front.odometry : devices.rear.odometry;
   return out;
 }
 
@@ -257,6 +278,7 @@ void write_carmen(const std::string& file, const Log& log, CarmenStyle style, co
       "# message_name [message contents] ipc_timestamp ipc_hostname logger_timestamp\n";
   print(text, "PARAM robot_front_laser_max %.3f 0 adit 0\n", mount.laser.range_max_m);
   for (size_t n = 0; n < scans.size(); ++n) {
+    if (!scans.tilt_rad.empty() && scans.tilt_rad[n] != 0) continue;
     if (truth) {
       const Pose2 X = flatten(truth->drive.path.at(truth->scans[at].stamp_s[n]));
       print(text, "TRUEPOS %.6f %.6f %.9f 0 0 0 %.6f adit %.6f\n", X.x_m, X.y_m, X.yaw_rad, scans.stamp_s[n],

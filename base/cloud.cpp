@@ -19,11 +19,12 @@ void add_scan(LabelledCloud& cloud, const Log& log, const Truth& truth, size_t l
   const Mount& mount = truth.rig.mounts[laser];
   const ScanTruth& so = truth.scans[laser];
   const std::span<const float> ranges = log.scans[laser][scan];
+  const Pose X_BS = so.X_BS(mount, scan);
   for (size_t k = 0; k < ranges.size(); ++k) {
     if (!std::isfinite(ranges[k])) continue;
     const double a = mount.laser.beam_angle_rad(static_cast<int>(k)), r = static_cast<double>(ranges[k]);
     const double stamp_s = so.stamp_s[scan] + mount.laser.beam_offset_s(static_cast<int>(k));
-    cloud.points.p.push_back(truth.drive.path.at(stamp_s) * mount.X_BS * Vec3(r * std::cos(a), r * std::sin(a), 0));
+    cloud.points.p.push_back(truth.drive.path.at(stamp_s) * X_BS * Vec3(r * std::cos(a), r * std::sin(a), 0));
     cloud.points.stamp_s.push_back(stamp_s);
     cloud.points.laser.push_back(static_cast<std::uint8_t>(laser));
     cloud.label.push_back(so.label[scan * ranges.size() + k]);

@@ -2,8 +2,10 @@
 #include "base/h5.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 #include <hdf5.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -16,6 +18,10 @@ namespace {
 // Debian's serial HDF5 is not safe to call from two threads at once.
 std::recursive_mutex& library() {
   static std::recursive_mutex mutex;
+  // Where a disk is full a file cannot be closed, over which the library falls when it shuts down at exit (1.10). We
+  // close what we open.
+  static const herr_t asked = H5dont_atexit();
+  static_cast<void>(asked);
   return mutex;
 }
 using Turn = std::lock_guard<std::recursive_mutex>;
@@ -82,27 +88,80 @@ std::string shape_name(const Shape& shape) {
   return "(" + text + ")";
 }
 
-// Chunks of whole rows of about 256 KiB; an empty array has none.
-Handle storage(const Shape& shape, size_t bytes, bool& good) {
+// Whole rows of about 256 KiB.
+std::uint64_t chunk_rows(const Shape& shape, size_t bytes) {
+  constexpr std::uint64_t chunk_bytes = 256 << 10;
+  const std::uint64_t row = bytes * count(shape) / shape[0];
+  return std::clamp<std::uint64_t>(chunk_bytes / row, 1, shape[0]);
+}
+
+// An empty array has no chunks.
+Handle storage(const Shape& shape, size_t bytes, Packing packing, bool& good) {
   Handle how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   good = how.valid() && H5Pset_obj_track_times(how, false) >= 0;
   if (count(shape) == 0) return how;
-  constexpr std::uint64_t chunk_bytes = 256 << 10;
-  const std::uint64_t row = bytes * count(shape) / shape[0];
   std::vector<hsize_t> chunk(shape.begin(), shape.end());
-  chunk[0] = std::clamp<std::uint64_t>(chunk_bytes / row, 1, shape[0]);
+  chunk[0] = chunk_rows(shape, bytes);
   const std::uint8_t zero = 0;
-  // Filled when allocated: the unused end of the last chunk must not hold what memory happened to hold.
   good = good && H5Pset_chunk(how, static_cast<int>(chunk.size()), chunk.data()) >= 0 &&
-         H5Pset_fill_value(how, H5T_NATIVE_UINT8, &zero) >= 0 && H5Pset_fill_time(how, H5D_FILL_TIME_ALLOC) >= 0 &&
-         H5Pset_shuffle(how) >= 0 && H5Pset_deflate(how, 1) >= 0 && H5Pset_fletcher32(how) >= 0;
+         H5Pset_fill_value(how, H5T_NATIVE_UINT8, &zero) >= 0 && H5Pset_fill_time(how, H5D_FILL_TIME_ALLOC) >= 0;
+  if (packing == Packing::small) good = good && H5Pset_shuffle(how) >= 0 && H5Pset_deflate(how, 1) >= 0;
+  good = good && H5Pset_fletcher32(how) >= 0;
   return how;
+}
+
+// HDF5's filters, applied by us: the library would take one chunk after the other on one thread.
+
+// Bytes of like weight side by side.
+std::vector<std::uint8_t> shuffled(std::span<const std::uint8_t> bytes, size_t width) {
+  const size_t n = bytes.size() / width;
+  std::vector<std::uint8_t> out(bytes.size());
+  for (size_t k = 0; k < width; ++k)
+    for (size_t i = 0; i < n; ++i) out[k * n + i] = bytes[i * width + k];
+  return out;
+}
+
+std::vector<std::uint8_t> deflated(std::span<const std::uint8_t> bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::vector<std::uint8_t> out(size);
+  ADIT_CHECK(compress2(out.data(), &size, bytes.data(), bytes.size(), 1) == Z_OK);
+  out.resize(size);
+  return out;
+}
+
+// Fletcher's sum of 16-bit words, each of them high byte first; an odd last byte is a high one.
+std::uint32_t fletcher32(std::span<const std::uint8_t> bytes) {
+  std::uint32_t a = 0, b = 0;
+  const auto fold = [](std::uint32_t s) { return (s & 0xFFFF) + (s >> 16); };
+  size_t i = 0;
+  while (i + 1 < bytes.size()) {
+    // So many words that the sums do not overflow.
+    for (size_t n = std::min<size_t>(360, (bytes.size() - i) / 2); n > 0; --n, i += 2)
+      b += a += (std::uint32_t{bytes[i]} << 8) | bytes[i + 1];
+    a = fold(a), b = fold(b);
+  }
+  if (i < bytes.size()) {
+    b += a += std::uint32_t{bytes[i]} << 8;
+    a = fold(a), b = fold(b);
+  }
+  return (fold(b) << 16) | fold(a);
+}
+
+// A chunk as it lies in the file.
+std::vector<std::uint8_t> filtered(std::span<const std::uint8_t> bytes, size_t width, Packing packing) {
+  std::vector<std::uint8_t> out = packing == Packing::quick ? std::vector<std::uint8_t>(bytes.begin(), bytes.end())
+                                  : width > 1               ? deflated(shuffled(bytes, width))
+                                                            : deflated(bytes);
+  const std::uint32_t sum = fletcher32(out);
+  for (int k = 0; k < 4; ++k) out.push_back(static_cast<std::uint8_t>(sum >> (8 * k)));
+  return out;
 }
 
 }  // namespace
 
 struct H5Writer::Impl {
   std::string called;
+  Packing packing;
   Handle file{-1, H5Fclose};
 
   void demand(bool good, const std::string& what) const {
@@ -116,11 +175,26 @@ struct H5Writer::Impl {
     const Handle attribute(H5Acreate2(at, key.c_str(), disk, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     demand(H5Awrite(attribute, memory, value) >= 0, path + " @" + key);
   }
+
+  // Chunks `first` on, whose bytes lie one behind the other.
+  void chunks(hid_t set, const std::string& path, std::span<const std::uint8_t> bytes, const Shape& shape, size_t width,
+              std::uint64_t first) {
+    const size_t chunk = chunk_rows(shape, width) * (count(shape) / shape[0]) * width, n = bytes.size() / chunk;
+    std::vector<std::vector<std::uint8_t>> packed(n);
+    parallel_for(n, [&](size_t i) { packed[i] = filtered(bytes.subspan(i * chunk, chunk), width, packing); });
+    std::vector<hsize_t> at(shape.size(), 0);
+    for (size_t i = 0; i < n; ++i) {
+      at[0] = (first + i) * chunk_rows(shape, width);
+      demand(H5Dwrite_chunk(set, H5P_DEFAULT, 0, at.data(), packed[i].size(), packed[i].data()) >= 0, path);
+    }
+  }
 };
 
-H5Writer::H5Writer(const std::string& file, const std::string& called) : impl_(std::make_unique<Impl>()) {
+H5Writer::H5Writer(const std::string& file, const std::string& called, Packing packing)
+    : impl_(std::make_unique<Impl>()) {
   const Turn turn(library());
   impl_->called = called;
+  impl_->packing = packing;
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
@@ -161,18 +235,50 @@ void H5Writer::text(const std::string& path, const std::string& key, const std::
 }
 
 template <class T>
-void H5Writer::array(const std::string& path, std::span<const T> values, const Shape& shape) {
-  ADIT_CHECK(!shape.empty() && count(shape) == values.size());
+void H5Writer::array(const std::string& path, const Shape& shape, const std::function<std::vector<T>()>& next) {
+  ADIT_CHECK(!shape.empty());
   const Turn turn(library());
   bool good = true;
-  const Handle how = storage(shape, sizeof(T), good);
+  const Handle how = storage(shape, sizeof(T), impl_->packing, good);
   const std::vector<hsize_t> size(shape.begin(), shape.end());
   const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
   const Handle set(H5Dcreate2(impl_->file, path.c_str(), Stored<T>::disk(), space, H5P_DEFAULT, how, H5P_DEFAULT),
                    H5Dclose);
   impl_->demand(good && set.valid(), path);
-  if (values.empty()) return;
-  impl_->demand(H5Dwrite(set, Stored<T>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0, path);
+  const std::uint64_t whole = count(shape) * sizeof(T);
+  if (whole == 0) return;
+  const size_t chunk = chunk_rows(shape, sizeof(T)) * (count(shape) / shape[0]) * sizeof(T);
+  constexpr size_t at_once = 16;  // chunks
+  std::vector<std::uint8_t> waiting;
+  std::uint64_t taken = 0, done = 0;  // bytes and chunks
+  while (taken < whole) {
+    const std::vector<T> piece = next();
+    taken += piece.size() * sizeof(T);
+    if (piece.empty() || taken > whole)
+      throw Error(impl_->called + ": " + path + ": its pieces do not add up to " + shape_name(shape));
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(piece.data());
+    waiting.insert(waiting.end(), bytes, bytes + piece.size() * sizeof(T));
+    // The last chunk has its full size in the file, the rest of it zero.
+    if (taken == whole) waiting.resize((waiting.size() + chunk - 1) / chunk * chunk, 0);
+    if (taken < whole && waiting.size() < at_once * chunk) continue;
+    const size_t full = waiting.size() / chunk * chunk;
+    impl_->chunks(set, path, {waiting.data(), full}, shape, sizeof(T), done);
+    waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(full));
+    done += full / chunk;
+  }
+}
+
+template <class T>
+void H5Writer::array(const std::string& path, std::span<const T> values, const Shape& shape) {
+  ADIT_CHECK(!shape.empty() && count(shape) == values.size());
+  constexpr size_t at_once = 4 << 20;  // bytes
+  size_t at = 0;
+  array<T>(path, shape, [&] {
+    const size_t from = at;
+    at = std::min(values.size(), at + at_once / sizeof(T));
+    return std::vector<T>(values.begin() + static_cast<std::ptrdiff_t>(from),
+                          values.begin() + static_cast<std::ptrdiff_t>(at));
+  });
 }
 
 void H5Writer::close() {
@@ -185,6 +291,12 @@ template void H5Writer::array<double>(const std::string&, std::span<const double
 template void H5Writer::array<float>(const std::string&, std::span<const float>, const Shape&);
 template void H5Writer::array<std::int32_t>(const std::string&, std::span<const std::int32_t>, const Shape&);
 template void H5Writer::array<std::uint8_t>(const std::string&, std::span<const std::uint8_t>, const Shape&);
+template void H5Writer::array<double>(const std::string&, const Shape&, const std::function<std::vector<double>()>&);
+template void H5Writer::array<float>(const std::string&, const Shape&, const std::function<std::vector<float>()>&);
+template void H5Writer::array<std::int32_t>(const std::string&, const Shape&,
+                                            const std::function<std::vector<std::int32_t>()>&);
+template void H5Writer::array<std::uint8_t>(const std::string&, const Shape&,
+                                            const std::function<std::vector<std::uint8_t>()>&);
 
 struct H5Reader::Impl {
   std::string name;

@@ -54,6 +54,8 @@ class Draws {
   Draws(std::uint64_t seed, Draw draw);
   /// Four independent words of 32 bits at an address; the first two are random_bits.
   std::array<std::uint32_t, 4> at(std::uint64_t i, std::uint64_t j) const;
+  /// The words at (i, j), (i, j + 1), ..., (i, j + 7), side by side: words[w][k] is word w at j + k.
+  void eight_at(std::uint64_t i, std::uint64_t j, std::uint32_t (&words)[4][8]) const;
 
  private:
   std::uint32_t key_[2];

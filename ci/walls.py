@@ -26,6 +26,8 @@ HOMES = {
     r"png\.h": ["eval/png.cpp"],
     r"stb_|stb/": ["eval/type.cpp"],
     r"hdf5\.h|H5": ["base/h5.cpp"],
+    r"zlib\.h": ["base/h5.cpp"],
+    r"bzlib\.h|lz4": ["base/bag_format.cpp"],
     r"toml\+\+/": ["base/config.cpp"],
     r"tiny_gltf": ["base/mesh_glb.cpp"],
     r"tbb/|oneapi/": ["base/parallel.cpp"],

@@ -100,14 +100,15 @@ int run_command(const std::string& scenario, const Common& common, Console& cons
   load_rig(s.sensors);
   Stages stages(out_of(common, s.name), console);
   const World world = stages.world(s);
-  const Stages::Driven driven = stages.drive(s, world);
-  const std::optional<Estimate> estimate = stages.map(s, driven.recording.log);
+  Recording recording;
+  const Stages::Driven driven = stages.drive(s, world, &recording);
+  const std::optional<Estimate> estimate = stages.map(s, recording.log);
   if (!estimate) {
     stages.save_timing();
     return 1;
   }
-  const Score score = stages.score(s.score, world, driven.recording.truth, driven.recording.log.rig, *estimate);
-  stages.report(s, world, driven.recording, *estimate, score);
+  const Score score = stages.score(s.score, world, recording.truth, recording.log.rig, *estimate);
+  stages.report(s, world, recording, *estimate, score);
   stages.save_timing();
   console.result(s.name + ", seed " + std::to_string(s.seed));
   print_scores(score, console);
@@ -175,11 +176,11 @@ int drive_command(const std::string& scenario, const std::string& world_dir, con
   load_rig(s.sensors);
   Stages stages(out_of(common, s.name), console);
   const World world = world_dir.empty() ? stages.world(s) : load_world(world_dir);
-  const Stages::Driven driven = stages.drive(s, world);
+  const Stages::Driven driven = stages.drive(s, world, nullptr);
   stages.save_timing();
   console.result("recording: " + stages.out() + "/recording");
   if (console.wants_json()) {
-    const Drive& d = driven.recording.truth.drive;
+    const Drive& d = driven.drive;
     console.json(ordered_json{
         {"out", stages.out()}, {"end", drive_end_name(d.end)}, {"cause", d.cause}, {"driven_m", d.driven_m}}
                      .dump());
@@ -195,7 +196,7 @@ int map_command(const std::string& recording, const Common& common, Console& con
   if (const std::string ending = fs::path(recording).extension().string(); ending == ".g2o" || ending == ".graph")
     print_graph(stages.map(s.map, read_g2o(recording)), console);
   else
-    mapped = stages.map(s, load_any_log(recording)).has_value();
+    mapped = stages.map(s, load_any_log(recording, console)).has_value();
   stages.save_timing();
   if (!mapped) return 1;
   console.result("map: " + stages.out() + "/map");

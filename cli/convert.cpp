@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/convert.h"
 
+#include "base/bag.h"
 #include "base/carmen.h"
 #include "base/cloud.h"
 #include "base/error.h"
 #include "base/h5.h"
+#include "base/parts.h"
 
 #include <nlohmann/json.hpp>
 
@@ -16,20 +18,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Format { h5, flaser, robotlaser, tum, ply, pcd, folder };
+enum class Format { h5, flaser, robotlaser, bag, tum, ply, pcd, folder };
 
 Format format_of(const std::string& name) {
   const std::string ending = fs::path(name).extension().string();
   if (ending == ".h5") return Format::h5;
   if (ending == ".log") return Format::flaser;
   if (ending == ".clf") return Format::robotlaser;
+  if (ending == ".bag") return Format::bag;
   if (ending == ".tum") return Format::tum;
   if (ending == ".ply") return Format::ply;
   if (ending == ".pcd") return Format::pcd;
   if (ending.empty()) return Format::folder;
   throw Error(name + ": '" + ending +
-              "' is no format that adit knows; it knows .h5, .log and .clf (CARMEN), .tum, .ply, " +
-              ".pcd, and a folder (SemanticKITTI)");
+              "' is no format that adit knows; it knows .h5, .log and .clf (CARMEN), .bag (ROS 1), " +
+              ".tum, .ply, .pcd, and a folder (SemanticKITTI)");
 }
 
 // What a file holds; each format has a part of it.
@@ -38,6 +41,7 @@ struct Content {
   std::optional<Truth> truth;
   std::optional<Trajectory> path;
   std::optional<PointCloud> points;
+  std::vector<std::string> notes;  // what was left out of it
 };
 
 Content read_h5(const std::string& file, std::string truth_file) {
@@ -64,6 +68,14 @@ Content read_content(const std::string& file, const std::string& truth_file) {
       CarmenLog carmen = read_carmen(file);
       c.log = std::move(carmen.log);
       if (!carmen.true_path.empty()) c.path = std::move(carmen.true_path);
+      c.notes = std::move(carmen.notes);
+      return c;
+    }
+    case Format::bag: {
+      BagLog bag = read_bag(file);
+      c.log = std::move(bag.log);
+      if (!bag.path.empty()) c.path = std::move(bag.path);
+      c.notes = std::move(bag.notes);
       return c;
     }
     case Format::tum:
@@ -100,6 +112,8 @@ void write_content(const Content& c, const std::string& from, const std::string&
       return write_carmen(to, log(), CarmenStyle::flaser, c.truth ? &*c.truth : nullptr);
     case Format::robotlaser:
       return write_carmen(to, log(), CarmenStyle::robotlaser, c.truth ? &*c.truth : nullptr);
+    case Format::bag:
+      return write_bag(to, log(), c.truth ? &*c.truth : nullptr);
     case Format::tum:
       return write_tum(to, needed(c.path, "a path", from, to));
     case Format::ply:
@@ -111,11 +125,33 @@ void write_content(const Content& c, const std::string& from, const std::string&
   }
 }
 
+// A folder of parts that a killed drive left: the log, and the truth beside it.
+int join_command(const std::string& from, const std::string& to, Console& console) {
+  if (format_of(to) != Format::h5) throw Error(to + ": parts are joined to a file.h5; convert that");
+  const Parts parts = find_parts(from);
+  for (const std::string& note : parts.notes) console.note(note);
+  const std::string truth = (fs::path(to).parent_path() / "truth.h5").string();
+  if (truth == to) throw Error(to + ": is where the truth goes; give the log another name, such as log.h5");
+  nlohmann::ordered_json written{{"from", from}, {"to", to}, {"parts", parts.logs.size()}, {"notes", parts.notes}};
+  if (!parts.truths.empty()) {
+    join_truths(truth, parts.truths);
+    console.result("written: " + truth);
+    written["truth"] = truth;
+  }
+  join_logs(to, parts.logs);
+  console.result("written: " + to + ", of " + std::to_string(parts.logs.size()) + " parts");
+  console.json(written.dump());
+  return 0;
+}
+
 }  // namespace
 
-Log load_any_log(const std::string& file) {
+Log load_any_log(const std::string& file, Console& console) {
   const std::string ending = fs::path(file).extension().string();
-  return ending == ".log" || ending == ".clf" ? read_carmen(file).log : load_log(file);
+  if (ending != ".log" && ending != ".clf" && ending != ".bag") return load_log(file);
+  Content c = read_content(file, "");
+  for (const std::string& note : c.notes) console.note(note);
+  return std::move(*c.log);
 }
 
 void write_any_log(const std::string& file, const Log& log) {
@@ -127,9 +163,12 @@ void write_any_log(const std::string& file, const Log& log) {
 int convert_command(const std::string& from, const std::string& to, const std::string& truth_file, int every,
                     Console& console) {
   format_of(to);  // a bad name is said before a long read
-  write_content(read_content(from, truth_file), from, to, static_cast<size_t>(every));
+  if (is_parts(from)) return join_command(from, to, console);
+  const Content content = read_content(from, truth_file);
+  for (const std::string& note : content.notes) console.note(note);
+  write_content(content, from, to, static_cast<size_t>(every));
   console.result("written: " + to);
-  console.json(nlohmann::ordered_json{{"from", from}, {"to", to}}.dump());
+  console.json(nlohmann::ordered_json{{"from", from}, {"to", to}, {"notes", content.notes}}.dump());
   return 0;
 }
 

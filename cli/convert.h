@@ -8,8 +8,9 @@
 
 namespace adit {
 
-/// The log in a file of any format that holds one: .h5 of ours, .log and .clf of CARMEN.
-Log load_any_log(const std::string& file);
+/// The log in a file of any format that holds one: .h5 of ours, .log and .clf of CARMEN, .bag of ROS 1. What could not
+/// be read of it is said.
+Log load_any_log(const std::string& file, Console& console);
 
 /// A log alone, in the format that the name says. Error for a format that needs the truth.
 void write_any_log(const std::string& file, const Log& log);

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -96,7 +97,8 @@ void add_commands(CLI::App& app, Words& w) {
   drive->add_option("--world", w.world, "folder of a mine made before");
   add_common(drive, w, true);
   CLI::App* map = app.add_subcommand("map", "a map from a recording alone");
-  map->add_option("recording", w.first, "log.h5, a CARMEN log (.log, .clf), or a pose graph (.g2o, .graph)")
+  map->add_option("recording", w.first,
+                  "log.h5, a CARMEN log (.log, .clf), a ROS 1 bag (.bag), or a pose graph (.g2o, .graph)")
       ->required();
   add_common(map, w, false);
   add_score(app, w);
@@ -111,7 +113,11 @@ void add_commands(CLI::App& app, Words& w) {
   render->add_option("view", w.second, "one of 'adit list views'")->required();
   add_common(render, w, false);
   CLI::App* convert = app.add_subcommand("convert", "a recording, a path or a cloud in another format");
-  convert->add_option("from", w.first, ".h5, CARMEN .log or .clf, .tum, .ply, .pcd")->required();
+  convert
+      ->add_option(
+          "from", w.first,
+          ".h5, CARMEN .log or .clf, ROS 1 .bag, .tum, .ply, .pcd, or recording/parts of a drive that was killed")
+      ->required();
   convert->add_option("to", w.second, "the same, or a folder in SemanticKITTI's layout")->required();
   convert->add_option("--truth", w.truth, "truth.h5 of the recording; else the one beside it");
   convert->add_option("--every", w.every, "of clouds: every so many scans")->check(CLI::Range(1, 1000000));
@@ -129,6 +135,8 @@ void add_commands(CLI::App& app, Words& w) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A file that grows beyond a limit is answered as a full disk is, by an error that names it.
+  std::signal(SIGXFSZ, SIG_IGN);
   CLI::App app("adit: test underground laser mapping before anyone goes underground", "adit");
   app.set_version_flag("--version", "adit " ADIT_VERSION);
   app.require_subcommand(1);

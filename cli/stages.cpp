@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/parts.h"
 #include "base/world_writer.h"
 #include "eval/mine_views.h"
 #include "eval/trouble.h"
@@ -123,24 +124,22 @@ void Stages::pictures(const World& world) {
   });
 }
 
-Stages::Driven Stages::drive(const Scenario& s, const World& world) {
+Stages::Driven Stages::drive(const Scenario& s, const World& world, Recording* keep) {
   Driven driven{};
   timed("drive", [&] {
     const auto seed = static_cast<std::uint64_t>(s.seed);
     const Vehicle vehicle = load_vehicle(s.vehicle);
     const Rig rig = load_rig(s.sensors);
     const Route route = plan_route(world, s.route, seed);
-    const Drive path = adit::drive(world, route, vehicle, s.drive, seed, console_.progress());
-    driven.recording = record(world, path, rig, vehicle.hull, s.sensors, seed, console_.progress());
-    driven.exit_code = path.end == DriveEnd::finished ? 0 : 1;
+    driven.drive = adit::drive(world, route, vehicle, s.drive, seed, console_.progress());
+    driven.exit_code = driven.drive.end == DriveEnd::finished ? 0 : 1;
     write_text(out_ + "/scenario.toml", resolved_toml(s));
-    save_log(out_ + "/recording/log.h5", driven.recording.log);
-    save_truth(out_ + "/recording/truth.h5", driven.recording.truth);
+    stream(s, world, driven.drive, rig, vehicle, keep);
     forget({"recording/trouble.png", "map", "external", "score.json", "report"});
     if (driven.exit_code != 0)
-      write_png(out_ + "/recording/trouble.png", trouble_picture(world, driven.recording.truth.drive, vehicle.hull));
+      write_png(out_ + "/recording/trouble.png", trouble_picture(world, driven.drive, vehicle.hull));
   });
-  const Drive& d = driven.recording.truth.drive;
+  const Drive& d = driven.drive;
   const double minutes = d.path.empty() ? 0 : (d.path.stamp_s.back() - d.path.stamp_s.front()) / 60;
   console_.note("  drove " + with_unit(d.driven_m, "m", 0) + " of " + with_unit(d.route.length_m, "m", 0) + " in " +
                 with_unit(minutes, "min", 1));
@@ -148,6 +147,33 @@ Stages::Driven Stages::drive(const Scenario& s, const World& world) {
     console_.note("  the drive ended early (" + drive_end_name(d.end) + "): " + d.cause + "; see " + out_ +
                   "/recording/trouble.png");
   return driven;
+}
+
+// What the lasers see, to OUT/recording/parts, and from there to log.h5 and truth.h5.
+void Stages::stream(const Scenario& s, const World& world, const Drive& drive, const Rig& rig, const Vehicle& vehicle,
+                    Recording* keep) {
+  constexpr double part_s = 60;
+  const std::string dir = out_ + "/recording/parts";
+  remove_parts(dir);  // of a drive that was killed
+  std::vector<std::string> logs, truths;
+  const auto take = [&](Recording&& piece) {
+    const size_t n = logs.size();
+    save_part(dir, n, piece.log, piece.truth);
+    logs.push_back(part_log(dir, n));
+    truths.push_back(part_truth(dir, n));
+    if (!keep) return;
+    if (n == 0) {
+      *keep = std::move(piece);
+    } else {
+      append(keep->log, piece.log);
+      append(keep->truth, piece.truth);
+    }
+  };
+  record(world, drive, rig, vehicle.hull, s.sensors, static_cast<std::uint64_t>(s.seed), part_s, take,
+         console_.progress());
+  join_truths(out_ + "/recording/truth.h5", truths);
+  join_logs(out_ + "/recording/log.h5", logs);
+  remove_parts(dir);
 }
 
 std::optional<Estimate> Stages::map(const Scenario& s, const Log& log) {

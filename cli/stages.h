@@ -27,10 +27,12 @@ class Stages {
   /// OUT/world/plan.png, interior-1.png, interior-2.png
   void pictures(const World& world);
   struct Driven {
-    Recording recording;
+    Drive drive;
     int exit_code;  // 1 where the drive ended early
   };
-  Driven drive(const Scenario& s, const World& world);
+  /// OUT/recording, streamed: a part a minute, joined at the end.
+  /// @param keep  or null: becomes the recording; without it memory does not hold more of it than a minute
+  Driven drive(const Scenario& s, const World& world, Recording* keep);
   /// By adit's own mapper, or by the command of [map.external]; none where that failed, which is noted.
   std::optional<Estimate> map(const Scenario& s, const Log& log);
   /// The optimum of a bare pose graph: OUT/map/graph.g2o, covariance.txt and map.json.
@@ -53,6 +55,8 @@ class Stages {
   Console& console_;
   std::vector<Timed> times_;
 
+  void stream(const Scenario& s, const World& world, const Drive& drive, const Rig& rig, const Vehicle& vehicle,
+              Recording* keep);
   void timed(const std::string& stage, const std::function<void()>& work);
   void forget(const std::vector<std::string>& later) const;
 };

@@ -24,7 +24,7 @@ TrueScans::TrueScans(const Truth& truth, const Mesh& mesh) : truth_(&truth), mes
 }
 
 Pose TrueScans::X_WS(size_t laser, size_t scan) const {
-  return truth_->drive.path.at(truth_->scans[laser].stamp_s[scan]) * mount(laser).X_BS;
+  return truth_->drive.path.at(truth_->scans[laser].stamp_s[scan]) * truth_->scans[laser].X_BS(mount(laser), scan);
 }
 
 bool TrueScans::echoes(const LaserModel& laser, std::int32_t face, double range_m, double incidence_rad) const {
@@ -39,7 +39,7 @@ TrueBeam TrueScans::beam(size_t laser, size_t scan, int k) const {
   const ScanTruth& s = truth_->scans[laser];
   const size_t at = scan * static_cast<size_t>(m.laser.beams) + static_cast<size_t>(k);
   const double angle = m.laser.beam_angle_rad(k);
-  const Pose X_WS = truth_->drive.path.at(s.stamp_s[scan] + m.laser.beam_offset_s(k)) * m.X_BS;
+  const Pose X_WS = truth_->drive.path.at(s.stamp_s[scan] + m.laser.beam_offset_s(k)) * s.X_BS(m, scan);
   const double range_m = static_cast<double>(s.range_m[at]);
   return {X_WS.translation(),
           X_WS.linear() * Vec3(std::cos(angle), std::sin(angle), 0),

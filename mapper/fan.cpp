@@ -9,6 +9,7 @@ std::vector<FanBeam> fan_of(const Log& log, int laser, size_t scan, const Trajec
   const Mount& mount = log.rig.mounts[laser];
   const Scans& scans = log.scans[laser];
   const LaserModel& model = mount.laser;
+  const Pose X_BS = scans.X_BS(mount, scan);
   const double stamp_s = scans.stamp_s[scan];
   struct Turn {
     double start_s, end_s;
@@ -19,7 +20,7 @@ std::vector<FanBeam> fan_of(const Log& log, int laser, size_t scan, const Trajec
   for (int t = 0; t < interlace; ++t) {
     const int last = (scans.beams - 1 - t) / interlace * interlace + t;
     const double start_s = stamp_s + model.beam_offset_s(t), end_s = stamp_s + model.beam_offset_s(last);
-    turns.push_back({start_s, end_s, X_MB.at(start_s) * mount.X_BS, X_MB.at(end_s) * mount.X_BS});
+    turns.push_back({start_s, end_s, X_MB.at(start_s) * X_BS, X_MB.at(end_s) * X_BS});
   }
   std::vector<FanBeam> fan;
   fan.reserve(scans.beams / step + 1);

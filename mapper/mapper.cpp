@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace adit {
@@ -28,13 +29,20 @@ Aligned align(const Odometry& odometry, const std::vector<ScanPoints>& points, c
   return align_robust(odometry, match, settings.robust, progress);
 }
 
+bool nods(const Log& log) {
+  return std::any_of(log.scans.begin(), log.scans.end(), [](const Scans& s) { return !s.tilt_rad.empty(); });
+}
+
 /// What the lasers other than the horizontal one add: path, points, surface, volume and notes. Leaves planar and grid alone.
-void add_height(const Log& log, const MapSettings& settings, const Progress& progress, Estimate& estimate) {
-  TiltSolution tilt = solve_tilt(log, estimate.path.stamp_s, estimate.planar, settings.tilt, progress);
+/// Scans of tilted mounts are in `log` alone and give points alone.
+void add_height(const Log& level, const Log& log, const MapSettings& settings, const Progress& progress,
+                Estimate& estimate) {
+  TiltSolution tilt = solve_tilt(level, estimate.path.stamp_s, estimate.planar, settings.tilt, progress);
   if (!tilt.note.empty()) estimate.notes.push_back(tilt.note);
   estimate.path = std::move(tilt.path);
-  const Log corrected = without_bias(log, tilt.range_bias_m);
-  estimate.points = map_points(corrected, tilt.dense, settings.volume);
+  const Log corrected = without_bias(level, tilt.range_bias_m);
+  estimate.points =
+      map_points(nods(log) ? without_bias(log, tilt.range_bias_m) : corrected, tilt.dense, settings.volume);
   MappedVoid mapped = map_void(corrected, tilt.dense, settings.volume, progress);
   estimate.surface = std::move(mapped.surface);
   estimate.volume_m3 = mapped.volume_m3;
@@ -58,7 +66,9 @@ Fields fields(MapSettings& s) {
   return all;
 }
 
-Estimate make_map(const Log& log, const MapSettings& settings, const Progress& progress) {
+Estimate make_map(const Log& all, const MapSettings& settings, const Progress& progress) {
+  const Log level = nods(all) ? level_scans(all) : Log{};
+  const Log& log = nods(all) ? level : all;
   const int h = horizontal_laser(log);
   const Scans& scans = log.scans[h];
   const Mount& mount = log.rig.mounts[h];
@@ -83,7 +93,7 @@ Estimate make_map(const Log& log, const MapSettings& settings, const Progress& p
 
   // Height is mostly one factorisation on one thread: the grid is drawn beside it.
   parallel_for(2, [&](size_t task) {
-    if (task == 0) add_height(log, settings, progress, estimate);
+    if (task == 0) add_height(log, all, settings, progress, estimate);
     if (task == 1) estimate.grid = map_grid(scans, mount, estimate.planar, settings.grid, settings.odometry.points);
   });
   return estimate;

@@ -25,6 +25,37 @@ RTCDevice make_device() {
   return device;
 }
 
+// 16 rays on their way through Embree.
+struct Packet {
+  alignas(64) RTCRayHit16 rays;
+  alignas(64) int valid[16];
+
+  Packet() {
+    for (size_t k = 0; k < 16; ++k) {
+      rays.ray.tnear[k] = rays.ray.time[k] = 0;
+      rays.ray.mask[k] = ~0U;
+      rays.ray.id[k] = rays.ray.flags[k] = 0;
+    }
+  }
+
+  bool met(size_t k) const { return rays.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID; }
+
+  // The first n lanes; the others stay empty.
+  void arm(size_t n, float far_m) {
+    for (size_t k = 0; k < 16; ++k) {
+      valid[k] = k < n ? -1 : 0;
+      rays.ray.tfar[k] = far_m;
+      rays.hit.geomID[k] = rays.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+  }
+};
+
+// What 16 rays are in doubles, and what they met.
+struct Lanes {
+  alignas(64) double o[3][16], d[3][16], a[3][16], b[3][16], c[3][16];
+  alignas(64) double rough[16], exact[16], range_m[16], cosine[16];
+};
+
 // Ericson, Real-Time Collision Detection, 5.1.5.
 Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
@@ -70,32 +101,32 @@ struct Caster::Impl {
     return {sound ? exact : range, static_cast<std::int32_t>(face), slope / n.norm()};
   }
 
-  // What up to 16 rays meet; the lanes beyond them stay empty.
-  void intersect(std::span<const Ray> rays, RTCRayHit16& packet) const {
-    alignas(64) int valid[16];
-    for (size_t k = 0; k < 16; ++k) {
-      const Ray& ray = rays[std::min(k, rays.size() - 1)];
-      const Vec3 o = ray.origin - middle;
-      valid[k] = k < rays.size() ? -1 : 0;
-      packet.ray.org_x[k] = static_cast<float>(o.x());
-      packet.ray.org_y[k] = static_cast<float>(o.y());
-      packet.ray.org_z[k] = static_cast<float>(o.z());
-      packet.ray.dir_x[k] = static_cast<float>(ray.direction.x());
-      packet.ray.dir_y[k] = static_cast<float>(ray.direction.y());
-      packet.ray.dir_z[k] = static_cast<float>(ray.direction.z());
-      packet.ray.tnear[k] = 0;
-      packet.ray.tfar[k] = static_cast<float>(ray.far_m);
-      packet.ray.time[k] = 0;
-      packet.ray.mask[k] = ~0u;
-      packet.ray.id[k] = 0;
-      packet.ray.flags[k] = 0;
-      packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-      packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-    }
+  void intersect(Packet& p) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(valid, scene, &context, &packet);
+    rtcIntersect16(p.valid, scene, &context, &p.rays);
+  }
+
+  // refined() of 16 lanes: plain loops that the compiler turns into vectors.
+  void refine(const Packet& p, Lanes& l) const {
+    for (size_t k = 0; k < 16; ++k) {
+      const auto& corner = mesh->face[p.met(k) ? p.rays.hit.primID[k] : 0];
+      const Vec3 &a = mesh->vertex[corner[0]], &b = mesh->vertex[corner[1]], &c = mesh->vertex[corner[2]];
+      for (int i = 0; i < 3; ++i) l.a[i][k] = a[i], l.b[i][k] = b[i], l.c[i][k] = c[i];
+      l.rough[k] = static_cast<double>(p.rays.ray.tfar[k]);
+    }
+    for (size_t k = 0; k < 16; ++k) {
+      const double ux = l.b[0][k] - l.a[0][k], uy = l.b[1][k] - l.a[1][k], uz = l.b[2][k] - l.a[2][k];
+      const double vx = l.c[0][k] - l.a[0][k], vy = l.c[1][k] - l.a[1][k], vz = l.c[2][k] - l.a[2][k];
+      const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+      const double slope = nx * l.d[0][k] + ny * l.d[1][k] + nz * l.d[2][k];
+      const double way = nx * (l.a[0][k] - l.o[0][k]) + ny * (l.a[1][k] - l.o[1][k]) + nz * (l.a[2][k] - l.o[2][k]);
+      l.exact[k] = way / slope;
+      l.cosine[k] = slope / std::sqrt(nx * nx + ny * ny + nz * nz);
+    }
+    for (size_t k = 0; k < 16; ++k)
+      l.range_m[k] = std::abs(l.exact[k] - l.rough[k]) < 1e-3 * (1 + l.rough[k]) ? l.exact[k] : l.rough[k];
   }
 };
 
@@ -140,33 +171,98 @@ Hit Caster::nearest(const Ray& ray) const {
 
 void Caster::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
   ADIT_CHECK(rays.size() == hits.size());
-  alignas(64) RTCRayHit16 packet;
+  Packet p;
   for (size_t begin = 0; begin < rays.size(); begin += 16) {
     const size_t n = std::min<size_t>(16, rays.size() - begin);
-    impl_->intersect(rays.subspan(begin, n), packet);
+    p.arm(n, 0);
+    for (size_t k = 0; k < 16; ++k) {
+      const Ray& ray = rays[begin + std::min(k, n - 1)];
+      const Vec3 o = ray.origin - impl_->middle;
+      p.rays.ray.org_x[k] = static_cast<float>(o.x());
+      p.rays.ray.org_y[k] = static_cast<float>(o.y());
+      p.rays.ray.org_z[k] = static_cast<float>(o.z());
+      p.rays.ray.dir_x[k] = static_cast<float>(ray.direction.x());
+      p.rays.ray.dir_y[k] = static_cast<float>(ray.direction.y());
+      p.rays.ray.dir_z[k] = static_cast<float>(ray.direction.z());
+      p.rays.ray.tfar[k] = static_cast<float>(ray.far_m);
+    }
+    impl_->intersect(p);
     for (size_t k = 0; k < n; ++k)
-      hits[begin + k] = packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
-                            ? Hit{infinity, -1}
-                            : impl_->refined(rays[begin + k], packet.hit.primID[k], packet.ray.tfar[k]);
+      hits[begin + k] =
+          p.met(k) ? impl_->refined(rays[begin + k], p.rays.hit.primID[k], p.rays.ray.tfar[k]) : Hit{infinity, -1};
   }
 }
 
-void Caster::glance(std::span<const Ray> rays, std::span<Glance> glances) const {
-  ADIT_CHECK(rays.size() == glances.size());
-  alignas(64) RTCRayHit16 packet;
+void Caster::nearest(const RayColumns<double>& rays, size_t columns, size_t abreast, HitColumns<double>& hits) const {
+  ADIT_CHECK(columns > 0 && rays.size() % columns == 0 && abreast > 0 && 16 % abreast == 0);
+  const size_t rows = rays.size() / columns, wide = 16 / abreast;
+  hits.resize(rays.size());
+  Packet p;
+  const Vec3& m = impl_->middle;
+  Lanes l;
+  size_t at[16];
+  for (size_t row = 0; row < rows; row += abreast)
+    for (size_t column = 0; column < columns; column += wide) {
+      size_t n = 0;
+      for (size_t r = row; r < std::min(rows, row + abreast); ++r)
+        for (size_t c = column; c < std::min(columns, column + wide); ++c) at[n++] = r * columns + c;
+      for (size_t k = n; k < 16; ++k) at[k] = at[n - 1];
+      for (size_t k = 0; k < 16; ++k) {
+        const size_t i = at[k];
+        l.o[0][k] = rays.x[i], l.o[1][k] = rays.y[i], l.o[2][k] = rays.z[i];
+        l.d[0][k] = rays.dx[i], l.d[1][k] = rays.dy[i], l.d[2][k] = rays.dz[i];
+      }
+      p.arm(n, 1e4F);
+      for (size_t k = 0; k < 16; ++k) {
+        p.rays.ray.org_x[k] = static_cast<float>(l.o[0][k] - m.x());
+        p.rays.ray.org_y[k] = static_cast<float>(l.o[1][k] - m.y());
+        p.rays.ray.org_z[k] = static_cast<float>(l.o[2][k] - m.z());
+        p.rays.ray.dir_x[k] = static_cast<float>(l.d[0][k]);
+        p.rays.ray.dir_y[k] = static_cast<float>(l.d[1][k]);
+        p.rays.ray.dir_z[k] = static_cast<float>(l.d[2][k]);
+      }
+      impl_->intersect(p);
+      impl_->refine(p, l);
+      for (size_t k = 0; k < n; ++k) {
+        const bool met = p.met(k);
+        hits.range_m[at[k]] = met ? l.range_m[k] : infinity;
+        hits.cosine[at[k]] = met ? l.cosine[k] : 0;
+        hits.face[at[k]] = met ? static_cast<std::int32_t>(p.rays.hit.primID[k]) : -1;
+      }
+    }
+}
+
+void Caster::glance(const RayColumns<float>& rays, HitColumns<float>& hits) const {
+  hits.resize(rays.size());
+  Packet p;
   for (size_t begin = 0; begin < rays.size(); begin += 16) {
     const size_t n = std::min<size_t>(16, rays.size() - begin);
-    impl_->intersect(rays.subspan(begin, n), packet);
-    for (size_t k = 0; k < n; ++k) {
+    p.arm(n, 1e4F);
+    const auto fill = [&](float* lanes, const std::vector<float>& column) {
+      std::copy_n(column.begin() + static_cast<std::ptrdiff_t>(begin), n, lanes);
+      std::fill(lanes + n, lanes + 16, lanes[0]);
+    };
+    fill(p.rays.ray.org_x, rays.x), fill(p.rays.ray.org_y, rays.y), fill(p.rays.ray.org_z, rays.z);
+    fill(p.rays.ray.dir_x, rays.dx), fill(p.rays.ray.dir_y, rays.dy), fill(p.rays.ray.dir_z, rays.dz);
+    impl_->intersect(p);
+    alignas(64) float cosine[16];
+    for (size_t k = 0; k < 16; ++k) {
       // Embree's normal is not of unit length; like ours it looks out of a face that is counter-clockwise.
-      const float x = packet.hit.Ng_x[k], y = packet.hit.Ng_y[k], z = packet.hit.Ng_z[k];
-      const float along = x * packet.ray.dir_x[k] + y * packet.ray.dir_y[k] + z * packet.ray.dir_z[k];
-      const bool met = packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
-      glances[begin + k] = {met ? packet.ray.tfar[k] : std::numeric_limits<float>::infinity(),
-                            met ? static_cast<std::int32_t>(packet.hit.primID[k]) : -1,
-                            met ? along / std::sqrt(x * x + y * y + z * z) : 0.0F};
+      const float x = p.rays.hit.Ng_x[k], y = p.rays.hit.Ng_y[k], z = p.rays.hit.Ng_z[k];
+      const float along = x * p.rays.ray.dir_x[k] + y * p.rays.ray.dir_y[k] + z * p.rays.ray.dir_z[k];
+      cosine[k] = along / std::sqrt(x * x + y * y + z * z);
+    }
+    for (size_t k = 0; k < n; ++k) {
+      const bool met = p.met(k);
+      hits.range_m[begin + k] = met ? p.rays.ray.tfar[k] : std::numeric_limits<float>::infinity();
+      hits.cosine[begin + k] = met ? cosine[k] : 0.0F;
+      hits.face[begin + k] = met ? static_cast<std::int32_t>(p.rays.hit.primID[k]) : -1;
     }
   }
+}
+
+const Vec3& Caster::middle() const {
+  return impl_->middle;
 }
 
 namespace {

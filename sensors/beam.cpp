@@ -35,17 +35,6 @@ double Meeting::incidence_rad() const {
   return std::acos(std::min(cosine, 1.0));
 }
 
-Meeting meeting_of(const Mesh& mesh, const Hit& hit, double default_reflectivity) {
-  if (hit.face < 0) return {};
-  const size_t f = static_cast<size_t>(hit.face);
-  return {.range_m = hit.range_m,
-          .cosine = std::abs(hit.cosine),
-          .reflectivity = mesh.reflectivity.empty() ? default_reflectivity : mesh.reflectivity[f],
-          .label = mesh.label.empty() ? Label::none : mesh.label[f],
-          .part = mesh.part.empty() ? -1 : mesh.part[f],
-          .face = hit.face};
-}
-
 Meeting meet_hull(const Hull& hull, const Vec3& origin_B, const Vec3& direction_B, double reflectivity) {
   Meeting nearest;
   for (const Box& box : hull) {

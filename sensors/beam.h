@@ -6,6 +6,7 @@
 #include "base/rig.h"
 #include "rays/caster.h"
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -27,7 +28,16 @@ struct Meeting {
 };
 
 /// What a ray of the world met, of which `hit` is known.
-Meeting meeting_of(const Mesh& mesh, const Hit& hit, double default_reflectivity);
+inline Meeting meeting_of(const Mesh& mesh, const Hit& hit, double default_reflectivity) {
+  if (hit.face < 0) return {};
+  const size_t f = static_cast<size_t>(hit.face);
+  return {.range_m = hit.range_m,
+          .cosine = std::abs(hit.cosine),
+          .reflectivity = mesh.reflectivity.empty() ? default_reflectivity : mesh.reflectivity[f],
+          .label = mesh.label.empty() ? Label::none : mesh.label[f],
+          .part = mesh.part.empty() ? -1 : mesh.part[f],
+          .face = hit.face};
+}
 
 /// What a ray in B meets of a vehicle's boxes. A box that holds the ray's origin is passed over.
 Meeting meet_hull(const Hull& hull, const Vec3& origin_B, const Vec3& direction_B, double reflectivity);

@@ -58,40 +58,49 @@ void sines(const Numbers& v, Numbers& sine, Numbers& cosine) {
 }
 
 // Box and Muller: two normal numbers of two even ones.
-void eight(const Words (&w)[4], Chance* out, size_t n) {
-  Numbers u, v, detect, drop, ln, sine, cosine;
+void normals(const Words (&w)[4], Numbers& range, Numbers& angle) {
+  Numbers u, v, ln, sine, cosine;
   units(w[0], u);
   units(w[1], v);
-  units(w[2], detect);
-  units(w[3], drop);
   logs(u, ln);
   sines(v, sine, cosine);
-  for (size_t k = 0; k < n; ++k) {
+  for (size_t k = 0; k < lanes; ++k) {
     const double r = std::sqrt(-2 * ln[k]);
-    out[k] = {r * cosine[k], r * sine[k], detect[k], drop[k]};
+    range[k] = r * cosine[k];
+    angle[k] = r * sine[k];
   }
 }
 
-void some(const Draws& draws, std::uint64_t scan, std::uint64_t first, Chance* out, size_t n) {
-  Words w[4] = {};
-  for (size_t k = 0; k < n; ++k) {
-    const std::array<std::uint32_t, 4> words = draws.at(scan, first + k);
-    for (size_t i = 0; i < 4; ++i) w[i][k] = words[i];
-  }
-  eight(w, out, n);
+struct Eight {
+  Numbers range = {}, angle = {}, detect, drop;
+};
+
+Eight eight(const Draws& draws, std::uint64_t scan, std::uint64_t first, bool normal) {
+  Words w[4];
+  draws.eight_at(scan, first, w);
+  Eight e;
+  if (normal) normals(w, e.range, e.angle);
+  units(w[2], e.detect);
+  units(w[3], e.drop);
+  return e;
 }
 
 }  // namespace
 
-void draw_chances(const Draws& draws, std::uint64_t scan, std::span<Chance> chances) {
-  for (size_t k = 0; k < chances.size(); k += lanes)
-    some(draws, scan, k, chances.data() + k, std::min(lanes, chances.size() - k));
+void draw_chances(const Draws& draws, std::uint64_t scan, size_t n, bool normal, Chances& c, size_t at) {
+  for (size_t k = 0; k < n; k += lanes) {
+    const Eight e = eight(draws, scan, k, normal);
+    const size_t some = std::min(lanes, n - k);
+    std::copy_n(e.range, some, c.range.data() + at + k);
+    std::copy_n(e.angle, some, c.angle.data() + at + k);
+    std::copy_n(e.detect, some, c.detect.data() + at + k);
+    std::copy_n(e.drop, some, c.drop.data() + at + k);
+  }
 }
 
 Chance chance_at(const Draws& draws, std::uint64_t scan, std::uint64_t beam) {
-  Chance one{};
-  some(draws, scan, beam, &one, 1);
-  return one;
+  const Eight e = eight(draws, scan, beam, true);
+  return {e.range[0], e.angle[0], e.detect[0], e.drop[0]};
 }
 
 }  // namespace adit

@@ -4,7 +4,7 @@
 #include "base/rng.h"
 
 #include <cstdint>
-#include <span>
+#include <vector>
 
 namespace adit {
 
@@ -14,9 +14,20 @@ struct Chance {
   double detect, drop;  // in (0, 1)
 };
 
-/// The chance of beams 0, 1, ... of a scan, all at once: each at its own address, so that any part of them is the same.
-/// @param draws  of Draw::beam_chance
-void draw_chances(const Draws& draws, std::uint64_t scan, std::span<Chance> chances);
+/// The same of many beams, by its numbers.
+struct Chances {
+  std::vector<double> range, angle, detect, drop;  // (n)
+
+  void resize(size_t n) { range.resize(n), angle.resize(n), detect.resize(n), drop.resize(n); }
+  size_t size() const { return range.size(); }
+  Chance operator[](size_t i) const { return {range[i], angle[i], detect[i], drop[i]}; }
+};
+
+/// The chance of beams 0 to n - 1 of a scan, into places `at` on: each at its own address, so that any part of them is
+/// the same.
+/// @param draws   of Draw::beam_chance
+/// @param normal  whether range and angle are asked for; else they become 0
+void draw_chances(const Draws& draws, std::uint64_t scan, size_t n, bool normal, Chances& chances, size_t at);
 /// That of one beam.
 Chance chance_at(const Draws& draws, std::uint64_t scan, std::uint64_t beam);
 

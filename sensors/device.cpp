@@ -28,11 +28,12 @@ Device make_device(const LaserModel& model, size_t mount, const SensorSettings& 
       const double period_m = 1 + 3 * draw(0);
       device.curve[n] = {model.curve_m / 3 * draw(1), 2 * std::numbers::pi / period_m, 2 * std::numbers::pi * draw(2)};
     }
+  device.varies = settings.energy || settings.warm_up || settings.range_curve;
   return device;
 }
 
-double device_error_m(const Device& device, double range_m, double effective_reflectivity, double on_s) {
-  double error_m = device.bias_m;
+double varying_error_m(const Device& device, double range_m, double effective_reflectivity, double on_s) {
+  double error_m = 0;
   for (const Device::Swing& s : device.curve)
     if (s.amplitude_m > 0) error_m += s.amplitude_m * std::sin(s.per_m * range_m + s.phase_rad);
   if (device.energy_m != 0) {

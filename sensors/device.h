@@ -19,13 +19,18 @@ struct Device {
   double bias_m = 0;                // constant
   std::array<Swing, 3> curve = {};  // swings with the range
   double energy_m = 0;              // of dark targets; bright ones err the other way
+  bool varies = false;              // with range, target or time
   double warm_up_m = 0;             // when switched on, fading by model.warm_up_s
 };
 
 /// The device at a mount: each error evenly within the model's band, 0 when switched off.
 Device make_device(const LaserModel& model, size_t mount, const SensorSettings& settings, std::uint64_t seed);
 
+/// What of it is not the bias.
+double varying_error_m(const Device& device, double range_m, double effective_reflectivity, double on_s);
 /// Its systematic error at a range, for a target's effective reflectivity, `on_s` after it was switched on.
-double device_error_m(const Device& device, double range_m, double effective_reflectivity, double on_s);
+inline double device_error_m(const Device& device, double range_m, double effective_reflectivity, double on_s) {
+  return device.varies ? device.bias_m + varying_error_m(device, range_m, effective_reflectivity, on_s) : device.bias_m;
+}
 
 }  // namespace adit

@@ -32,17 +32,12 @@ Bundle make_bundle(int rays) {
   return bundle;
 }
 
-double Threshold::margin(double effective_reflectivity, double range_m) const {
-  const double least = factor * model->least_reflectivity(range_m);
-  return least > 0 ? effective_reflectivity / least : std::numeric_limits<double>::infinity();
-}
-
 bool Threshold::passes(double margin) const {
   if (always || std::isinf(margin)) return true;
   if (!(margin > 0)) return false;
   // P = 1 / (1 + margin^(-1 / spread)) > chance; most echoes are far from the threshold.
   const double x = std::log(margin) / spread;
-  if (x > 40) return true;
+  if (x > 24) return true;  // a chance of 32 bits is never so near to 1
   return 1 / (1 + std::exp(-x)) > chance;
 }
 
@@ -80,11 +75,36 @@ int surfaces_of(std::span<const Return> sorted) {
 
 }  // namespace
 
+namespace {
+
+// The returns as one surface tells them; nothing where they are of more, or some of them is missing.
+bool one_surface(std::span<const Return> returns, double& front_m) {
+  double back_m = front_m = returns.empty() ? 0 : returns[0].range_m;
+  bool all = !returns.empty();
+  for (const Return& r : returns) {
+    front_m = std::min(front_m, r.range_m);
+    back_m = std::max(back_m, r.range_m);
+    all = all && r.power > 0;
+  }
+  return all && back_m - front_m <= gap_m;
+}
+
+}  // namespace
+
 Echo first_echo(std::span<Return> returns, const Threshold& threshold, double pulse_m) {
+  Echo echo;
+  if (double front_m = 0; pulse_m >= gap_m && one_surface(returns, front_m)) {
+    // Most spots: nothing to sort, and what does not pass as a whole does not pass in parts.
+    Sum sum;
+    for (const Return& r : returns) add(sum, r, front_m);
+    echo.surfaces = 1;
+    echo.margin = threshold.margin(sum.power, front_m);
+    if (threshold.passes(echo.margin)) take(echo, sum, front_m, echo.margin);
+    return echo;
+  }
   const auto end = std::partition(returns.begin(), returns.end(),
                                   [](const Return& r) { return std::isfinite(r.range_m) && r.power > 0; });
   const std::span<Return> got(returns.begin(), end);
-  Echo echo;
   if (got.empty()) return echo;
   std::sort(got.begin(), got.end(), [](const Return& a, const Return& b) { return a.range_m < b.range_m; });
   echo.surfaces = surfaces_of(got);

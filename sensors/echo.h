@@ -5,6 +5,8 @@
 #include "base/laser.h"
 #include "sensors/settings.h"
 
+#include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -33,7 +35,10 @@ struct Threshold {
   double chance = 0.5;  // of this beam, in [0, 1)
 
   /// Effective reflectivity over the least that the model notices at a range.
-  double margin(double effective_reflectivity, double range_m) const;
+  double margin(double effective_reflectivity, double range_m) const {
+    const double least = factor * model->least_reflectivity(range_m);
+    return least > 0 ? effective_reflectivity / least : std::numeric_limits<double>::infinity();
+  }
   bool passes(double margin) const;
 };
 
@@ -51,5 +56,18 @@ struct Echo {
 /// their ranges by power; the first that passes the threshold is told, what lies behind is ignored. Reorders `returns`.
 /// Sources: SICK telegram listing 8007954 (first pulse, merging); Sanz-Cortiella et al., Sensors 2011 (length, by power).
 Echo first_echo(std::span<Return> returns, const Threshold& threshold, double pulse_m);
+
+/// The same of a spot that is taken for its axis.
+inline Echo echo_of_one(const Return& r, const Threshold& threshold) {
+  Echo echo;
+  if (!(r.power > 0) || std::isinf(r.range_m)) return echo;
+  echo.surfaces = 1;
+  echo.margin = threshold.margin(r.power, r.range_m);
+  if (!threshold.passes(echo.margin)) return echo;
+  echo.noticed = true;
+  echo.range_m = r.range_m;
+  echo.effective_reflectivity = r.power;
+  return echo;
+}
 
 }  // namespace adit

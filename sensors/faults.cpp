@@ -128,7 +128,8 @@ Pose slipped_mount(const Pose& X_BS, double time_s, const std::vector<FaultPlan>
   return X;
 }
 
-void freeze_and_mark(Scans& scans, ScanTruth& truth, const std::vector<FaultPlan>& faults, double begin_s) {
+void freeze_and_mark(Scans& scans, ScanTruth& truth, const Scans& before, const std::vector<FaultPlan>& faults,
+                     double begin_s) {
   const auto beams = static_cast<std::ptrdiff_t>(scans.beams);
   for (size_t n = 0; n < scans.size(); ++n) {
     std::uint8_t mark = 0;
@@ -141,9 +142,11 @@ void freeze_and_mark(Scans& scans, ScanTruth& truth, const std::vector<FaultPlan
     }
     const auto row = static_cast<std::ptrdiff_t>(n) * beams;
     // A laser that is frozen from its first scan on tells that one.
-    if (frozen && n > 0) {
-      std::copy_n(scans.range_m.begin() + row - beams, beams, scans.range_m.begin() + row);
-      std::copy_n(scans.code.begin() + row - beams, beams, scans.code.begin() + row);
+    if (frozen && (n > 0 || before.size() > 0)) {
+      const Scans& from = n > 0 ? scans : before;
+      const auto last = n > 0 ? row - beams : 0;
+      std::copy_n(from.range_m.begin() + last, beams, scans.range_m.begin() + row);
+      std::copy_n(from.code.begin() + last, beams, scans.code.begin() + row);
       mark |= trouble::frozen;
     }
     if (mark)

@@ -47,6 +47,8 @@ double clock_error_s(double time_s, const std::vector<FaultPlan>& faults, double
 /// The mount at a time.
 Pose slipped_mount(const Pose& X_BS, double time_s, const std::vector<FaultPlan>& faults, double begin_s);
 /// Tells the scan before it again wherever a laser is frozen, and marks scans that are frozen, slipped or badly stamped.
-void freeze_and_mark(Scans& scans, ScanTruth& truth, const std::vector<FaultPlan>& faults, double begin_s);
+/// @param before  the scan before the first of these; empty where there is none
+void freeze_and_mark(Scans& scans, ScanTruth& truth, const Scans& before, const std::vector<FaultPlan>& faults,
+                     double begin_s);
 
 }  // namespace adit

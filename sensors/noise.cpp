@@ -55,20 +55,20 @@ double dust_range_m(const SensorSettings& s, double rock_m, const BeamAddress& a
 
 double counted(double range_m, const SensorSettings& s) {
   const double step_m = s.counter_mm * 1e-3;
-  return step_m > 0 ? std::round(range_m / step_m) * step_m : range_m;
+  return step_m > 0 ? std::floor(range_m / step_m + 0.5) * step_m : range_m;
 }
 
 // Sd of one range: the sheet's, and what the spot adds.
-double sigma_m(const Device& device, const Echo& echo, size_t rays, double incidence_rad, const SensorSettings& s) {
+double sigma_m(const Device& device, const Echo& echo, size_t rays, double cosine, const SensorSettings& s) {
   constexpr double of_spread = 0.1;  // merged surfaces are told less surely
-  const double sigma = range_sigma_m(device.model, 1 / echo.margin);
-  if (rays > 1) return std::hypot(sigma, of_spread * echo.spread_m);
-  return s.footprint ? std::hypot(sigma, footprint_sigma_m(device.model, echo.range_m, incidence_rad)) : sigma;
+  const double merged_m = rays > 1 ? of_spread * echo.spread_m : 0;
+  const double smeared_m2 = rays == 1 && s.footprint ? footprint_variance_m2(device.model, echo.range_m, cosine) : 0;
+  return std::sqrt(range_variance_m2(device.model, 1 / echo.margin) + merged_m * merged_m + smeared_m2);
 }
 
 }  // namespace
 
-Reading reading(const Device& device, std::span<Return> returns, double incidence_rad, const SensorSettings& settings,
+Reading reading(const Device& device, std::span<Return> returns, double cosine, const SensorSettings& settings,
                 const Chance& chance, const BeamAddress& at, double on_s) {
   if (chance.drop < settings.drop_out) return nothing(failure(device, at), trouble::dropped);
   if (settings.crosstalk > 0 && stray(at, 2) < settings.crosstalk)
@@ -82,17 +82,15 @@ Reading reading(const Device& device, std::span<Return> returns, double incidenc
   if (dust_m > 0) return told(device, dust_m + device.bias_m, 0, trouble::dust);
   const Threshold threshold{&device.model, !settings.detection, settings.detection_spread, settings.dirty_window,
                             chance.detect};
-  const Echo echo = first_echo(returns, threshold, settings.pulse_m);
+  const Echo echo =
+      returns.size() == 1 ? echo_of_one(returns[0], threshold) : first_echo(returns, threshold, settings.pulse_m);
   // Between the threshold of the stop and that of the peak an echo is heard but not measured.
   if (!echo.noticed) return nothing(device.model.codes && echo.margin > 0.85 ? Code::weak : Code::no_echo);
   double range_m =
       counted(echo.range_m, settings) + device_error_m(device, echo.range_m, echo.effective_reflectivity, on_s);
-  if (settings.noise) range_m += sigma_m(device, echo, returns.size(), incidence_rad, settings) * chance.range;
+  if (settings.noise && chance.range != 0)
+    range_m += sigma_m(device, echo, returns.size(), cosine, settings) * chance.range;
   return told(device, range_m, echo.surfaces, echo.spread_m > 0.05 ? trouble::mixed : 0);
-}
-
-double beam_angle_error_rad(const SensorSettings& settings, const Chance& chance) {
-  return settings.beam_angle_deg * degree * chance.angle;
 }
 
 Rig true_rig(const Rig& nominal, const SensorSettings& settings, std::uint64_t seed) {

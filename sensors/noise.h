@@ -30,13 +30,10 @@ struct Reading {
 };
 
 /// @param returns        of the beam's spot, one where it is taken for its axis; reordered
-/// @param incidence_rad  of the axis, for the smear of a spot that is taken for its axis
+/// @param cosine         of the axis' incidence, for the smear of a spot that is taken for its axis
 /// @param on_s           since the device was switched on
-Reading reading(const Device& device, std::span<Return> returns, double incidence_rad, const SensorSettings& settings,
+Reading reading(const Device& device, std::span<Return> returns, double cosine, const SensorSettings& settings,
                 const Chance& chance, const BeamAddress& address, double on_s);
-
-/// How far a beam's direction errs within the scan plane.
-double beam_angle_error_rad(const SensorSettings& settings, const Chance& chance);
 
 /// The rig as it truly is: mounts moved in their own frames by the settings' errors, each laser with a phase of its
 /// own.

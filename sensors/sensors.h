@@ -10,6 +10,7 @@
 #include "sensors/settings.h"
 
 #include <cstdint>
+#include <functional>
 
 namespace adit {
 
@@ -30,5 +31,11 @@ struct Recording {
 /// recording on any number of threads. A laser that starts inside the rock is an Error.
 Recording record(const World& world, const Drive& drive, const Rig& nominal, const Hull& hull,
                  const SensorSettings& settings, std::uint64_t seed, const Progress& progress = {});
+
+/// The same in pieces of piece_s that follow each other: `take` is given each as soon as it is measured, a recording of
+/// its own of which only path and scans are cut. Memory holds the drive's path, the scans' stamps and one piece.
+void record(const World& world, const Drive& drive, const Rig& nominal, const Hull& hull,
+            const SensorSettings& settings, std::uint64_t seed, double piece_s,
+            const std::function<void(Recording&&)>& take, const Progress& progress = {});
 
 }  // namespace adit

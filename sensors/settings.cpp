@@ -32,7 +32,7 @@ Fields fields(SensorSettings& s) {
       {"dust_loss_per_m", &s.dust_loss_per_m, "light lost each way, 0.02 to 0.1 in stirred rock dust", 0, 10},
       {"dust_echo_per_m", &s.dust_echo_per_m, "chance that a particle is measured before the rock", 0, 10},
       {"dazzle_deg", &s.dazzle_deg, "beams within this of a portal are dazzled by daylight; 0 = none", 0, 180},
-      {"crosstalk", &s.crosstalk, "share of beams that hear another laser of the rig, 1e-4 to 1e-3", 0, 1},
+      {"crosstalk", &s.crosstalk, "share of beams that hear another laser at hand, 1e-4 to 1e-3; none at 6 m", 0, 1},
       {"water", &s.water, "faces labelled water are mirrors"},
       {"faults", &s.faults, "\"LASER dies|freezes|slips|loses|drifts|lags from_s=... [to_s=...] ...\""},
       {"reflectivity", &s.reflectivity, "of a world that states none, at 905 nm", 0, 100},

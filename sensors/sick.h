@@ -3,6 +3,10 @@
 
 #include "base/laser.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace adit {
 
 // What the sheets of the SICK LMS 2xx state, as laws. Reflectivities are diffuse, at 905 nm; the effective one of a
@@ -13,15 +17,36 @@ namespace adit {
 /// its width.
 double detection_chance(const LaserModel& model, double effective_reflectivity, double range_m, double spread);
 
-/// Sd of one range, metres: the stated one, growing as an echo nears the threshold.
+/// Variance and sd of one range: the stated one, growing as an echo nears the threshold.
 /// @param weakness  least reflectivity that is noticed over the target's effective one, 1 at the threshold
-double range_sigma_m(const LaserModel& model, double weakness);
+inline double range_variance_m2(const LaserModel& model, double weakness) {
+  // Echoes below half of the threshold are not noticed; the law is not carried further.
+  const double w = std::min(weakness, 2.0);
+  return model.sigma_m * model.sigma_m * (1 + w * w);
+}
+inline double range_sigma_m(const LaserModel& model, double weakness) {
+  return std::sqrt(range_variance_m2(model, weakness));
+}
 
-/// Sd that comes on top where the spot is smeared along a slanting surface: diameter * tan(incidence) / 8.
-double footprint_sigma_m(const LaserModel& model, double range_m, double incidence_rad);
+/// Variance and sd that come on top where the spot is smeared along a slanting surface: diameter * tan(incidence) / 8.
+/// @param cosine  of the incidence
+inline double footprint_variance_m2(const LaserModel& model, double range_m, double cosine) {
+  // Nearer to grazing than 85 degrees the tangent runs away, and the echo is lost anyway.
+  constexpr double least = 0.08715574274765817;
+  const double c = std::clamp(cosine, least, 1.0), diameter_m = model.spot_m + model.divergence_rad * range_m;
+  return diameter_m * diameter_m * (1 - c * c) / (64 * c * c);
+}
+inline double footprint_sigma_m(const LaserModel& model, double range_m, double cosine) {
+  return std::sqrt(footprint_variance_m2(model, range_m, cosine));
+}
 
 /// What the telegram says of a measured range: rounded to the resolution; +inf beyond the mode's range, NaN where
 /// nothing positive is left.
-float reported_range_m(const LaserModel& model, double range_m);
+inline float reported_range_m(const LaserModel& model, double range_m) {
+  if (range_m > model.range_max_m) return std::numeric_limits<float>::infinity();
+  const double step_m = model.resolution_m;
+  const double told = step_m > 0 ? std::floor(range_m / step_m + 0.5) * step_m : range_m;
+  return told > 0 ? static_cast<float>(told) : std::numeric_limits<float>::quiet_NaN();
+}
 
 }  // namespace adit

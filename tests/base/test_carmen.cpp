@@ -133,6 +133,15 @@ TEST(Carmen, BadLinesAreNamedByFileAndLine) {
   EXPECT_THAT(error_of(good + good), HasSubstr("does not grow"));
 }
 
+TEST(Carmen, ALastLineThatBreaksOffIsLeftOutWithANote) {
+  const std::string good = "FLASER 2 1 2 0 0 0 0 0 0 1 h 1\n";
+  write_text(in_folder("cut.log"), good + "FLASER 2 1 2 0 0 0 0");
+  const CarmenLog log = read_carmen(in_folder("cut.log"));
+  EXPECT_EQ(log.log.scans[0].size(), 1u);
+  ASSERT_EQ(log.notes.size(), 1u);
+  EXPECT_THAT(log.notes[0], HasSubstr("cut.log:2: this line is cut short"));
+}
+
 TEST(Carmen, ARigWithoutAHorizontalLaserCannotBeWritten) {
   Log log = a_log(load_laser("lms200", 38400));
   log.rig.mounts[0].X_BS = pose_of(Vec3::Zero(), 0, M_PI / 2);

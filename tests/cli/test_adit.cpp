@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -345,6 +347,47 @@ TEST(Words, ListNamesWhatIsBundledAndHelpTheKeys) {
   for (const char* name : {"bruceton", "mini", "cart4", "lms200", "cart"}) EXPECT_THAT(list.out, HasSubstr(name));
   EXPECT_THAT(adit_says("help scenario").out, HasSubstr("world.kind"));
   EXPECT_THAT(adit_says("--help").out, HasSubstr("run"));
+}
+
+// A drive that makes several parts, each of which takes a while: slow pushing, many rays a beam.
+const std::string long_drive =
+    "drive " + tiny + " --quiet --set drive.speed_mps=0.25 --set sensors.sub_rays=37 --threads 1 -o ";
+
+TEST(Streaming, OfADriveThatIsKilledTheClosedPartsAreJoined) {
+  const std::string dir = fresh_folder("killed"), parts = dir + "/recording/parts";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execl("/bin/sh", "sh", "-c", ("exec " ADIT_BINARY " " + long_drive + dir).c_str(), nullptr);
+    ::_exit(127);
+  }
+  int status = 0;
+  while (!fs::exists(parts + "/log-0001.h5") && ::waitpid(child, &status, WNOHANG) == 0) ::usleep(20000);
+  ::kill(child, SIGKILL);
+  ::waitpid(child, &status, 0);
+  EXPECT_FALSE(fs::exists(dir + "/recording/log.h5"));
+  const Answer said = adit_says("convert " + parts + " " + dir + "/saved/log.h5 --json");
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const nlohmann::json answer = nlohmann::json::parse(said.out);
+  EXPECT_GE(answer["parts"], 2);
+  EXPECT_EQ(answer["notes"].size(), 0u);
+  // What was saved is a recording like another: log and truth fit each other.
+  const Answer cloud = adit_says("convert " + dir + "/saved/log.h5 " + dir + "/cloud.ply --every 50 --quiet");
+  EXPECT_EQ(cloud.exit_code, 0) << cloud.err;
+  fs::remove_all(dir);
+}
+
+TEST_F(TinyRun, AFullDiskIsReportedByFileAndNoHalfFileIsLeft) {
+  const std::string dir = fresh_folder("full");
+  const std::string at = ::testing::TempDir() + "adit_full_" + std::to_string(::getpid());
+  // No file may grow beyond 2 MB, which a part of the truth does.
+  const int status = std::system(("sh -c 'ulimit -f 4000; exec " ADIT_BINARY " drive " + tiny + " --quiet --world " +
+                                  out_ + "/world -o " + dir + "' 2>" + at)
+                                     .c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 74);
+  EXPECT_THAT(read_text(at), HasSubstr("truth-0000.h5: cannot write"));
+  for (const fs::directory_entry& entry : fs::directory_iterator(dir + "/recording/parts"))
+    ADD_FAILURE() << entry.path() << " is left";
+  fs::remove_all(dir);
 }
 
 }  // namespace

@@ -40,26 +40,63 @@ TEST(Caster, PacketsAnswerAsSingleRays) {
   }
 }
 
+// A fan that walks down a box: rows of scans.
+std::vector<Ray> walking_fan(int rows, int columns) {
+  std::vector<Ray> rays;
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      const double a = -1.5 + 3.0 * c / (columns - 1);
+      rays.push_back({Vec3(5 + 0.1 * r, 2 + 0.01 * r, 1), Vec3(std::cos(a), std::sin(a), 0.02).normalized()});
+    }
+  return rays;
+}
+
+template <class T>
+RayColumns<T> columns_of(const std::vector<Ray>& rays, const Vec3& about) {
+  RayColumns<T> c;
+  for (const Ray& ray : rays) {
+    const Vec3 o = ray.origin - about;
+    c.x.push_back(static_cast<T>(o.x())), c.y.push_back(static_cast<T>(o.y())), c.z.push_back(static_cast<T>(o.z()));
+    c.dx.push_back(static_cast<T>(ray.direction.x())), c.dy.push_back(static_cast<T>(ray.direction.y()));
+    c.dz.push_back(static_cast<T>(ray.direction.z()));
+  }
+  return c;
+}
+
+TEST(Caster, ATableOfRaysIsAnsweredAsSingleRaysHoweverItIsPacked) {
+  const Mesh mesh = fine_box_mesh({0, 0, 0}, {30, 5, 2}, 0.3);
+  const Caster caster(mesh);
+  const std::vector<Ray> rays = walking_fan(11, 37);  // neither fills packets
+  for (const size_t abreast : {1, 2, 4, 8, 16}) {
+    HitColumns<double> hits;
+    caster.nearest(columns_of<double>(rays, Vec3::Zero()), 37, abreast, hits);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const Hit one = caster.nearest(rays[i]);
+      EXPECT_EQ(hits.face[i], one.face) << abreast << " " << i;
+      EXPECT_NEAR(hits.range_m[i], one.range_m, 1e-13 * (1 + one.range_m)) << abreast << " " << i;
+      EXPECT_NEAR(hits.cosine[i], one.cosine, 1e-13) << abreast << " " << i;
+    }
+  }
+}
+
 TEST(Caster, AGlanceIsTheHitToFloats) {
   const Mesh mesh = fine_box_mesh({0, 0, 0}, {30, 5, 2}, 0.3);
   const Caster caster(mesh);
   std::vector<Ray> rays;
-  for (int i = 0; i < 1003; ++i) rays.push_back({Vec3(10, 2, 1), any_direction(i), i % 5 ? 1e4 : 0.5});
-  std::vector<Hit> hits(rays.size());
-  std::vector<Glance> glances(rays.size());
-  caster.nearest(rays, hits);
-  caster.glance(rays, glances);
-  for (size_t i = 0; i < rays.size(); ++i) {
-    EXPECT_EQ(glances[i].face, hits[i].face);
-    if (hits[i].face < 0) {
-      EXPECT_EQ(glances[i].range_m, INFINITY);
-      continue;
-    }
-    EXPECT_NEAR(glances[i].range_m, hits[i].range_m, 5e-5);
-    EXPECT_NEAR(glances[i].cosine, hits[i].cosine, 1e-5);
-    EXPECT_NEAR(hits[i].cosine, mesh.normal(static_cast<size_t>(hits[i].face)).dot(rays[i].direction), 1e-12);
-    EXPECT_GT(hits[i].cosine, 0);  // met from within
+  for (int i = 0; i < 1003; ++i) rays.push_back({Vec3(10, 2, 1), any_direction(i)});
+  rays.push_back({Vec3(10, 2, -5), -Vec3::UnitZ()});  // from below, away: nothing
+  HitColumns<float> glances;
+  caster.glance(columns_of<float>(rays, caster.middle()), glances);
+  for (size_t i = 0; i + 1 < rays.size(); ++i) {
+    const Hit hit = caster.nearest(rays[i]);
+    EXPECT_EQ(glances.face[i], hit.face);
+    EXPECT_NEAR(glances.range_m[i], hit.range_m, 5e-5);
+    EXPECT_NEAR(glances.cosine[i], hit.cosine, 1e-5);
+    EXPECT_NEAR(hit.cosine, mesh.normal(static_cast<size_t>(hit.face)).dot(rays[i].direction), 1e-12);
+    EXPECT_GT(hit.cosine, 0);  // met from within
   }
+  EXPECT_EQ(glances.face.back(), -1);
+  EXPECT_EQ(glances.range_m.back(), INFINITY);
 }
 
 TEST(Caster, NothingWithinReachIsInfinity) {

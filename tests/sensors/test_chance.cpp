@@ -9,10 +9,24 @@
 namespace adit {
 namespace {
 
+Chances drawn(const Draws& draws, std::uint64_t scan, size_t n, bool normal) {
+  Chances chances;
+  chances.resize(n);
+  draw_chances(draws, scan, n, normal, chances, 0);
+  return chances;
+}
+
+TEST(Chance, WithoutNormalNumbersTheOthersAreTheSame) {
+  const Draws draws(7, Draw::beam_chance);
+  const Chances all = drawn(draws, 9, 100, true), some = drawn(draws, 9, 100, false);
+  EXPECT_EQ(some.detect, all.detect);
+  EXPECT_EQ(some.drop, all.drop);
+  EXPECT_EQ(some.range, std::vector<double>(100, 0.0));
+}
+
 TEST(Chance, IsBoxAndMullersOfTheWordsAtItsAddress) {
   const Draws draws(7, Draw::beam_chance);
-  std::vector<Chance> chances(1000);
-  draw_chances(draws, 33, chances);
+  const Chances chances = drawn(draws, 33, 1000, true);
   for (std::uint64_t k = 0; k < chances.size(); ++k) {
     const auto w = draws.at(33, k);
     const double u = (w[0] + 0.5) / 4294967296.0, v = (w[1] + 0.5) / 4294967296.0;
@@ -27,8 +41,7 @@ TEST(Chance, IsBoxAndMullersOfTheWordsAtItsAddress) {
 
 TEST(Chance, OfOneBeamIsThatOfItInItsScanBitForBit) {
   const Draws draws(7, Draw::beam_chance);
-  std::vector<Chance> chances(361);
-  draw_chances(draws, 5, chances);
+  const Chances chances = drawn(draws, 5, 361, true);
   for (std::uint64_t k = 0; k < chances.size(); ++k) {
     const Chance one = chance_at(draws, 5, k);
     EXPECT_EQ(one.range, chances[k].range);
@@ -39,11 +52,11 @@ TEST(Chance, OfOneBeamIsThatOfItInItsScanBitForBit) {
 
 TEST(Chance, RangeAndAngleAreNormalAndIndependent) {
   const Draws draws(3, Draw::beam_chance);
-  std::vector<Chance> c(100000);
-  draw_chances(draws, 1, c);
+  const Chances c = drawn(draws, 1, 100000, true);
   const double n = static_cast<double>(c.size());
   double sum = 0, squares = 0, fourth = 0, product = 0;
-  for (const Chance& x : c) {
+  for (size_t k = 0; k < c.size(); ++k) {
+    const Chance x = c[k];
     sum += x.range;
     squares += x.range * x.range;
     fourth += std::pow(x.range, 4);

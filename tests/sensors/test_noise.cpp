@@ -30,7 +30,7 @@ Device device_of(const std::string& model, const LaserChoice& choice = {}) {
 Reading read_one(const Device& device, const Target& wall, const SensorSettings& s, std::uint64_t seed,
                  std::uint64_t beam, double on_s = 0) {
   std::vector<Return> returns{{wall.range_m, wall.reflectivity * std::cos(wall.incidence_rad)}};
-  return reading(device, returns, wall.incidence_rad, s, chance_at(Draws(seed, Draw::beam_chance), 17, beam),
+  return reading(device, returns, std::cos(wall.incidence_rad), s, chance_at(Draws(seed, Draw::beam_chance), 17, beam),
                  {seed, 17, beam}, on_s);
 }
 
@@ -80,7 +80,7 @@ TEST(Noise, GrowsTowardsTheThresholdAndWithTheSlantingSpot) {
   EXPECT_NEAR(sample(device, {12, threshold}, s, 1).sd, weak, 5 * weak / std::sqrt(2.0 * beams));
   s.footprint = true;
   const double slanted = std::hypot(range_sigma_m(model, model.least_reflectivity(8) / (0.45 * std::cos(1.2))),
-                                    footprint_sigma_m(model, 8, 1.2), 1e-3 / std::sqrt(12.0));
+                                    footprint_sigma_m(model, 8, std::cos(1.2)), 1e-3 / std::sqrt(12.0));
   EXPECT_NEAR(sample(device, {8, 0.45, 1.2}, s, 1).sd, slanted, 5 * slanted / std::sqrt(2.0 * beams));
 }
 

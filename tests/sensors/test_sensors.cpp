@@ -102,6 +102,88 @@ TEST(Sensors, TheLogHoldsTheNominalRigAndTheTruthTheTrueOne) {
   EXPECT_THAT(in.names("/rig/up"), ElementsAre("X_BS"));
 }
 
+TEST(Sensors, PiecesPutTogetherAreTheWholeAlsoAcrossAFault) {
+  const World world = ring_world(20, 4, 2, 1);
+  Drive drive = round_the_ring(20);
+  drive.ground = {1, 0, 2};
+  SensorSettings s;
+  s.faults = {"front freezes from_s=5 to_s=13", "up slips from_s=8 yaw_deg=1", "down loses from_s=1 share=0.5"};
+  const Rig rig = load_rig("cart4", 38400);
+  const Recording whole = record(world, drive, rig, {}, s, 11);
+  Recording sum;
+  size_t pieces = 0;
+  record(world, drive, rig, {}, s, 11, 3.7, [&](Recording&& piece) {
+    if (pieces++ == 0) {
+      sum = std::move(piece);
+    } else {
+      append(sum.log, piece.log);
+      append(sum.truth, piece.truth);
+    }
+  });
+  EXPECT_EQ(pieces, 6u);  // 20 s / 3.7 s
+  EXPECT_EQ(sum.truth.drive.path.stamp_s, drive.path.stamp_s);
+  EXPECT_EQ(sum.truth.drive.ground, drive.ground);
+  for (size_t i = 0; i < 4; ++i) {
+    EXPECT_TRUE(same_bits(sum.log.scans[i].stamp_s, whole.log.scans[i].stamp_s));
+    EXPECT_TRUE(same_bits(sum.log.scans[i].range_m, whole.log.scans[i].range_m));
+    EXPECT_TRUE(same_bits(sum.truth.scans[i].range_m, whole.truth.scans[i].range_m));
+    EXPECT_TRUE(same_bits(sum.truth.scans[i].fault, whole.truth.scans[i].fault));
+  }
+}
+
+TEST(Sensors, AMountThatNodsAtAStandTellsHowFarAndSeesFloorAndRoof) {
+  // Stands until 20 s, then drives on.
+  const World tunnel = tunnel_world(60, 4, 2);
+  const Drive drive = drive_of(25, [](double t) { return pose_of({20 + std::max(0.0, t - 20), 0, 0}, 0); });
+  Rig rig = one_laser("ideal", pose_of({0, 0, 1}, 0));
+  rig.mounts[0].tilt = {-0.5, 0.5, 10, true};
+  const Recording r = record(tunnel, drive, rig, {}, exact(), 1);
+  const Scans& scans = r.log.scans[0];
+  ASSERT_EQ(scans.tilt_rad.size(), scans.size());
+  EXPECT_EQ(r.truth.scans[0].tilt_rad, scans.tilt_rad);
+  double least = 0, most = 0;
+  for (size_t n = 0; n < scans.size(); ++n) {
+    const double tilt = scans.tilt_rad[n], r_m = r.truth.scans[0].range_m[n * 361 + 180];  // the middle beam
+    if (scans.stamp_s[n] > 10.1) {
+      EXPECT_EQ(tilt, 0) << n;
+    }  // one nod of 10 s a stand
+    // Straight ahead and tilted: the floor 1 m below, the roof 1 m above, or the end of the tunnel.
+    const double ahead_m = 40 - std::max(0.0, scans.stamp_s[n] - 20);
+    const double expected = std::min(1 / std::max(1e-9, std::abs(std::sin(tilt))), ahead_m / std::cos(tilt));
+    EXPECT_NEAR(r_m, expected, 1e-3 + 1e-4 * expected) << n << " at " << tilt;
+    if (tilt > 0.1) {
+      EXPECT_EQ(r.truth.scans[0].label[n * 361 + 180], static_cast<int>(Label::floor));
+    }
+    if (tilt < -0.1) {
+      EXPECT_EQ(r.truth.scans[0].label[n * 361 + 180], static_cast<int>(Label::roof));
+    }
+    least = std::min(least, tilt), most = std::max(most, tilt);
+  }
+  EXPECT_NEAR(most, 0.5, 0.01);  // 37.5 scans a second, 0.2 rad a second
+  EXPECT_NEAR(least, -0.5, 0.01);
+  const Log level = level_scans(r.log);
+  EXPECT_LT(level.scans[0].size(), scans.size());
+  for (const double tilt : level.scans[0].tilt_rad) EXPECT_EQ(tilt, 0);
+}
+
+TEST(Sensors, CrosstalkFallsWithTheDistanceToTheOtherLaserAndEndsAt6Metres) {
+  const World tunnel = tunnel_world(60, 8, 4, 2);
+  const Drive stand = drive_of(20, [](double) { return pose_of({30, 0, 0}, 0); });
+  for (const double apart_m : {0.0, 3.0, 7.0}) {
+    Rig rig = one_laser("ideal", pose_of({0, 0, 1}, 0));
+    rig.mounts.push_back(rig.mounts[0]);
+    rig.mounts[1].name = "other";
+    rig.mounts[1].X_BS = pose_of({apart_m, 0, 1}, 0);
+    SensorSettings s = exact();
+    s.crosstalk = 0.02;
+    const Recording r = record(tunnel, stand, rig, {}, s, 1);
+    double stray = 0, n = 0;
+    for (const std::uint8_t fault : r.truth.scans[0].fault) ++n, stray += (fault & trouble::stray) != 0;
+    const double share = 0.02 * std::max(0.0, 1 - apart_m / 6);
+    EXPECT_NEAR(stray / n, share, 5 * std::sqrt(share / n)) << apart_m;
+  }
+}
+
 TEST(Sensors, LoggedStampsErrAboutTheTrueOnesWithinTheJitter) {
   SensorSettings s;
   s.jitter_s = 0.002;
@@ -133,8 +215,9 @@ TEST(Sensors, ARecordingComesBackFromItsFilesBitForBit) {
   }
 }
 
-TEST(Sensors, BeamsTellLabelPartAndFaceOfTheRockThatTheyMeet) {
-  const World world = tunnel_world(30, 4, 2, 0.5);
+TEST(Sensors, BeamsTellLabelPartPassageAndFaceOfTheRockThatTheyMeet) {
+  World world = tunnel_world(30, 4, 2, 0.5);
+  for (size_t f = 0; f < world.mesh.face.size(); ++f) world.mesh.passage.push_back(static_cast<int>(f % 5));
   const Drive stand = drive_of(0.5, [](double) { return pose_of({15, 0, 0}, 0); });
   const Recording r = record(world, stand, load_rig("cart4", 500000), {}, exact(), 1);
   for (const ScanTruth& truth : r.truth.scans)
@@ -142,6 +225,7 @@ TEST(Sensors, BeamsTellLabelPartAndFaceOfTheRockThatTheyMeet) {
       ASSERT_GE(truth.face[k], 0);
       EXPECT_EQ(truth.label[k], static_cast<int>(world.mesh.label[truth.face[k]]));
       EXPECT_EQ(truth.part[k], world.mesh.part[truth.face[k]]);
+      EXPECT_EQ(truth.passage[k], world.mesh.passage[truth.face[k]]);
     }
 }
 

@@ -47,8 +47,8 @@ TEST(Sick, NoiseIsTheSheetsOnBrightTargetsAndRootTwoTimesAtTheThreshold) {
 }
 
 TEST(Sick, FootprintAddsNothingHeadOnAndAnEighthOfTheSpotAtFortyFiveDegrees) {
-  EXPECT_EQ(footprint_sigma_m(lms200(), 10, 0), 0);
-  EXPECT_NEAR(footprint_sigma_m(lms200(), 10, std::atan(1.0)), 0.056 / 8, 1e-9);  // 12 mm + 4.4 mrad * 10 m
+  EXPECT_EQ(footprint_sigma_m(lms200(), 10, 1), 0);
+  EXPECT_NEAR(footprint_sigma_m(lms200(), 10, std::sqrt(0.5)), 0.056 / 8, 1e-9);  // 12 mm + 4.4 mrad * 10 m
 }
 
 TEST(Sick, TheTelegramTellsWholeMillimetresUpToTheModesRange) {
