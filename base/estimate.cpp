@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/path_file.h"
+#include "base/rib_lines.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -173,8 +174,8 @@ std::vector<Pose2> load_planar(const std::string& file, size_t expected) {
 
 void save_graph(const std::string& dir, const SolvedGraph& g) {
   std::error_code absent;
-  for (const char* file :
-       {"/trajectory.tum", "/open_loop.tum", "/planar.tum", "/grid.pgm", "/grid.yaml", "/points.ply", "/surface.ply"})
+  for (const char* file : {"/trajectory.tum", "/open_loop.tum", "/planar.tum", "/grid.pgm", "/grid.yaml",
+                           "/ribs.geojson", "/ribs.dxf", "/points.ply", "/surface.ply"})
     fs::remove(dir + file, absent);
   write_g2o(dir + "/graph.g2o", g.graph, g.id);
   std::string rows;
@@ -191,10 +192,13 @@ void save_estimate(const std::string& dir, const Estimate& e) {
   save_planar(dir + "/open_loop.tum", e.path.stamp_s, e.open_loop);
   save_planar(dir + "/planar.tum", e.path.stamp_s, e.planar);
   std::error_code absent;
-  for (const char* file :
-       {"/grid.pgm", "/grid.yaml", "/points.ply", "/surface.ply", "/graph.g2o", "/path_covariance.txt"})
+  for (const char* file : {"/grid.pgm", "/grid.yaml", "/ribs.geojson", "/ribs.dxf", "/points.ply", "/surface.ply",
+                           "/graph.g2o", "/path_covariance.txt"})
     fs::remove(dir + file, absent);
-  if (!e.grid.log_odds.empty()) write_grid(dir + "/grid.pgm", e.grid);
+  if (!e.grid.log_odds.empty()) {
+    write_grid(dir + "/grid.pgm", e.grid);
+    write_rib_lines(dir + "/ribs", rib_lines(e.grid));
+  }
   if (e.points.size() > 0) write_points(dir + "/points.ply", e.points);
   if (!e.surface.face.empty()) write_mesh(dir + "/surface.ply", e.surface);
   if (e.graph) write_g2o(dir + "/graph.g2o", e.graph->graph, e.graph->id);

@@ -18,9 +18,10 @@ namespace adit {
 struct Aligned {
   std::vector<Pose2> X_MB;  // (scans) first = that of the front end
   std::vector<AlignmentRound> rounds;
-  bool converged = false;            // the correspondences repeated those of the round before
-  std::vector<Closure> closures;     // scan indices
-  std::optional<SolvedGraph> graph;  // that X_MB is spread from
+  bool converged = false;                   // the correspondences repeated those of the round before
+  std::vector<Closure> closures;            // scan indices
+  std::optional<SolvedGraph> graph;         // that X_MB is spread from
+  std::vector<Eigen::Matrix3d> covariance;  // (scans) or empty: of X_MB relative to the first, each in its own frame
   std::vector<std::string> notes;
 };
 

@@ -344,7 +344,10 @@ Aligned align_robust(const Odometry& odometry, const MatchPlaces& match_places, 
     last = accepted(p);
   }
   result.closures = closures_of(p);
-  if (p.node.size() > 1) result.graph = solve_graph({graph_of(p), p.chain.scan, true}, "path");
+  if (p.node.size() > 1) {
+    result.graph = solve_graph({graph_of(p), p.chain.scan, true}, "path");
+    result.covariance = spread_covariances(p.chain, result.X_MB, result.graph->covariance);
+  }
   if (!result.converged) result.notes.push_back("closures were still found in the last round allowed");
   progress("closing loops", settings.max_rounds, settings.max_rounds);
   return result;

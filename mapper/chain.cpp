@@ -57,6 +57,31 @@ Pose2 blend(const Pose2& A, const Pose2& B, double s) {
           wrap_angle(A.yaw_rad + s * wrap_angle(B.yaw_rad - A.yaw_rad))};
 }
 
+namespace {
+
+/// How far along the way scan i lies between two nodes.
+double share_of(const Chain& chain, int a, int b, int i) {
+  const double length_m = chain.along_m[b] - chain.along_m[a];
+  return length_m > 0 ? (chain.along_m[i] - chain.along_m[a]) / length_m : double(i - a) / (b - a);
+}
+
+}  // namespace
+
+std::vector<Eigen::Matrix3d> spread_covariances(const Chain& chain, const std::vector<Pose2>& X_MB,
+                                                const std::vector<Eigen::Matrix3d>& node) {
+  ADIT_CHECK(node.size() == chain.scan.size() && X_MB.size() == chain.along_m.size());
+  std::vector<Eigen::Matrix3d> C(X_MB.size(), Eigen::Matrix3d::Zero());
+  for (size_t k = 0; k + 1 < node.size(); ++k) {
+    const int a = chain.scan[k], b = chain.scan[k + 1];
+    for (int i = a + 1; i <= b; ++i) {
+      const double s = share_of(chain, a, b, i);
+      const Eigen::Matrix3d A = adjoint(X_MB[i].inverse() * X_MB[a]), B = adjoint(X_MB[i].inverse() * X_MB[b]);
+      C[i] = (1 - s) * A * node[k] * A.transpose() + s * B * node[k + 1] * B.transpose();
+    }
+  }
+  return C;
+}
+
 std::vector<Pose2> spread(const Chain& chain, const std::vector<Pose2>& open_loop, const std::vector<Pose2>& node) {
   ADIT_CHECK(node.size() == chain.scan.size() && open_loop.size() == chain.along_m.size());
   std::vector<Pose2> X(open_loop.size());
@@ -64,9 +89,8 @@ std::vector<Pose2> spread(const Chain& chain, const std::vector<Pose2>& open_loo
   for (size_t k = 0; k + 1 < node.size(); ++k) {
     const int a = chain.scan[k], b = chain.scan[k + 1];
     const Pose2 from_a = node[k] * open_loop[a].inverse(), from_b = node[k + 1] * open_loop[b].inverse();
-    const double length_m = chain.along_m[b] - chain.along_m[a];
     for (int i = a + 1; i <= b; ++i) {
-      const double s = length_m > 0 ? (chain.along_m[i] - chain.along_m[a]) / length_m : double(i - a) / (b - a);
+      const double s = share_of(chain, a, b, i);
       X[i] = i == b ? node[k + 1] : blend(from_a * open_loop[i], from_b * open_loop[i], s);
     }
   }

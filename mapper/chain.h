@@ -27,6 +27,11 @@ std::vector<int> node_before(const Chain& chain);
 /// node and the two are blended along the way, so that its shape stays.
 std::vector<Pose2> spread(const Chain& chain, const std::vector<Pose2>& open_loop, const std::vector<Pose2>& node);
 
+/// Covariances of the poses of all scans, each in its own frame, from those of the nodes: carried from the node before
+/// and the node after, weighed along the way.
+std::vector<Eigen::Matrix3d> spread_covariances(const Chain& chain, const std::vector<Pose2>& X_MB,
+                                                const std::vector<Eigen::Matrix3d>& node);
+
 /// From A (s = 0) to B (s = 1): straight in position, the shorter way round in yaw.
 Pose2 blend(const Pose2& A, const Pose2& B, double s);
 

@@ -89,6 +89,7 @@ Estimate make_map(const Log& all, const MapSettings& settings, const Progress& p
   estimate.converged = aligned.converged;
   estimate.closures = std::move(aligned.closures);
   estimate.graph = std::move(aligned.graph);
+  estimate.covariance.assign(aligned.covariance.begin(), aligned.covariance.end());
   estimate.notes.insert(estimate.notes.end(), aligned.notes.begin(), aligned.notes.end());
 
   // Height is mostly one factorisation on one thread: the grid is drawn beside it.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/dxf.h"
 #include "base/files.h"
 #include "base/grid.h"
 #include "worlds/worlds.h"
@@ -83,53 +84,12 @@ std::string svg_of(const World& world) {
   return text + "</g>\n</svg>\n";
 }
 
-// DXF R12: pairs of a group code and a value, a line each.
-class Dxf {
- public:
-  void put(int code, const std::string& value) { text_ += std::to_string(code) + "\n" + value + "\n"; }
-  void polyline(const std::string& layer, const Ring& ring, bool closed) {
-    put(0, "POLYLINE");
-    put(8, layer);
-    put(66, "1");
-    put(70, closed ? "1" : "0");
-    for (const Vec2& p : ring) {
-      put(0, "VERTEX");
-      put(8, layer);
-      at(p);
-    }
-    put(0, "SEQEND");
-  }
-  void point(const std::string& layer, const Vec2& p) {
-    put(0, "POINT");
-    put(8, layer);
-    at(p);
-  }
-  std::string text() const { return text_; }
-
- private:
-  void at(const Vec2& p) {
-    put(10, mm(p.x()));
-    put(20, mm(p.y()));
-    put(30, "0.0");
-  }
-  std::string text_;
-};
-
 std::string dxf_of(const World& world) {
   Dxf dxf;
-  dxf.put(0, "SECTION");
-  dxf.put(2, "HEADER");
-  dxf.put(9, "$ACADVER");
-  dxf.put(1, "AC1009");
-  dxf.put(0, "ENDSEC");
-  dxf.put(0, "SECTION");
-  dxf.put(2, "ENTITIES");
   dxf.polyline("VOID", world.outline, true);
   for (const Pillar& p : world.pillars) dxf.polyline("PILLARS", p.outline, true);
   for (const Passage& p : world.passages) dxf.polyline("CENTRE_LINES", flat(p.centre_line), false);
   for (const Junction& j : world.junctions) dxf.point("JUNCTIONS", j.p_W.head<2>());
-  dxf.put(0, "ENDSEC");
-  dxf.put(0, "EOF");
   return dxf.text();
 }
 

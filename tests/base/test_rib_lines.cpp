@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/files.h"
 #include "base/polyline.h"
-#include "mapper/rib_lines.h"
+#include "base/rib_lines.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include <cmath>
 
@@ -61,6 +64,27 @@ TEST(RibLines, FreeSpaceUpToTheBorderOfTheGridStillCloses) {
   const auto rings = rib_lines(grid_where([](const Vec2&) { return true; }), {});
   ASSERT_EQ(rings.size(), 1u);
   EXPECT_NEAR(signed_area(rings[0]), 20 * 12, 2 * 0.2 * 32);
+}
+
+TEST(RibLines, FilesHoldEachVoidWithItsOwnPillars) {
+  const Grid grid = grid_where([](const Vec2& p) {
+    return (within(p, -2, 6, 6, 14) && !within(p, 1, 3, 9, 11)) ||
+           (within(p, 8, 16, 6, 14) && !within(p, 10, 14, 8, 12));
+  });
+  const std::string file = ::testing::TempDir() + "adit_ribs_" + std::to_string(::getpid());
+  write_rib_lines(file, rib_lines(grid));
+  const auto all = nlohmann::json::parse(read_text(file + ".geojson"));
+  ASSERT_EQ(all["features"].size(), 2u);
+  for (const auto& feature : all["features"]) {
+    const auto& rings = feature["geometry"]["coordinates"];
+    ASSERT_EQ(rings.size(), 2u);  // the rim and one hole
+    EXPECT_EQ(rings[0].front(), rings[0].back());
+    const bool left = rings[0][0][0].get<double>() < 7;
+    EXPECT_EQ(rings[1][0][0].get<double>() < 7, left) << "a pillar in the other void";
+  }
+  const std::string dxf = read_text(file + ".dxf");
+  EXPECT_THAT(dxf, ::testing::HasSubstr("PILLARS"));
+  EXPECT_TRUE(dxf.ends_with("EOF\n"));
 }
 
 }  // namespace

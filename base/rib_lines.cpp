@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapper/rib_lines.h"
+#include "base/rib_lines.h"
 
+#include "base/dxf.h"
+#include "base/files.h"
 #include "base/polyline.h"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -74,12 +78,27 @@ class Contour {
   std::vector<std::uint32_t> next_;
 };
 
-}  // namespace
-
-Fields fields(RibLineSettings& s) {
-  return {{"least_m2", &s.least_m2, "rings of less area are left out", 0, 1000},
-          {"tolerance_m", &s.tolerance_m, "points nearer to the line are left out", 0, 1}};
+nlohmann::json json_of(const std::vector<Vec2>& ring) {
+  const auto to_mm = [](double v) { return std::round(v * 1000) / 1000; };
+  nlohmann::json points = nlohmann::json::array();
+  for (size_t k = 0; k <= ring.size(); ++k) {
+    const Vec2& p = ring[k % ring.size()];
+    points.push_back({to_mm(p.x()), to_mm(p.y())});
+  }
+  return points;
 }
+
+bool contains(const std::vector<Vec2>& ring, const Vec2& p) {
+  bool inside = false;
+  for (size_t k = 0; k < ring.size(); ++k) {
+    const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      inside = !inside;
+  }
+  return inside;
+}
+
+}  // namespace
 
 std::vector<std::vector<Vec2>> rib_lines(const Grid& grid, const RibLineSettings& settings) {
   std::vector<std::vector<Vec2>> rings;
@@ -94,6 +113,37 @@ std::vector<std::vector<Vec2>> rib_lines(const Grid& grid, const RibLineSettings
   std::stable_sort(rings.begin(), rings.end(),
                    [](const auto& a, const auto& b) { return std::abs(signed_area(a)) > std::abs(signed_area(b)); });
   return rings;
+}
+
+void write_rib_lines(const std::string& file, const std::vector<std::vector<Vec2>>& rings) {
+  Dxf dxf;
+  std::vector<nlohmann::json> polygons;
+  std::vector<size_t> outer;  // ring of each polygon
+  for (size_t k = 0; k < rings.size(); ++k) {
+    const bool is_pillar = signed_area(rings[k]) < 0;
+    dxf.polyline(is_pillar ? "PILLARS" : "VOID", rings[k], true);
+    if (is_pillar) continue;
+    outer.push_back(k);
+    polygons.push_back(nlohmann::json::array({json_of(rings[k])}));
+  }
+  for (const std::vector<Vec2>& ring : rings) {
+    if (signed_area(ring) > 0) continue;
+    // The smallest polygon about it: rings come by size.
+    for (size_t n = outer.size(); n-- > 0;)
+      if (contains(rings[outer[n]], ring.front())) {
+        polygons[n].push_back(json_of(ring));
+        break;
+      }
+  }
+  std::string text = "{\"type\": \"FeatureCollection\", \"features\": [";
+  for (size_t n = 0; n < polygons.size(); ++n) {
+    const nlohmann::json feature = {{"type", "Feature"},
+                                    {"properties", {{"kind", "void"}}},
+                                    {"geometry", {{"type", "Polygon"}, {"coordinates", polygons[n]}}}};
+    text += (n ? ",\n" : "\n") + feature.dump();
+  }
+  write_text(file + ".geojson", text + "\n]}\n");
+  write_text(file + ".dxf", dxf.text());
 }
 
 }  // namespace adit
