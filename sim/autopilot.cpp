@@ -35,7 +35,11 @@ Intent Autopilot::want(double t_s, double step_s, double along_m, const Guide& g
     if (!arrived_) plan_stop(halt_at_m_);
     return intent;
   }
-  turning_ = std::abs(guide.bearing_rad) > (turning_ ? turn_to_rad : turn_from_rad);
+  const double off_rad = std::abs(guide.bearing_rad);
+  const bool begins = !turning_;
+  turning_ = off_rad > (turning_ ? turn_to_rad : turn_from_rad);
+  // Near the opposite direction every jolt changes the side on which the way on lies: it is kept until that is plain.
+  if (begins || off_rad < turn_from_rad) turns_left_ = guide.bearing_rad > 0;
   const double brake = motors_.acceleration_mps2;
   double limit = std::min(settings_.robot_speed_mps, motors_.speed_max_mps);
   limit = std::min(limit, motors_.turn_max_rad_s / std::max(guide.curvature_ahead, 1e-3));
@@ -43,7 +47,7 @@ Intent Autopilot::want(double t_s, double step_s, double along_m, const Guide& g
   limit = std::min(limit, std::max(slowest_mps, std::sqrt(2 * brake * to_halt_m)));
   if (turning_) limit = 0;
   speed_mps_ = std::clamp(limit, speed_mps_ - 2 * brake * step_s, speed_mps_ + brake * step_s);
-  const double turn = turning_ && speed_mps_ == 0 ? std::copysign(motors_.turn_max_rad_s, guide.bearing_rad) : 0;
+  const double turn = turning_ && speed_mps_ == 0 ? (turns_left_ ? 1 : -1) * motors_.turn_max_rad_s : 0;
   const double more = motors_.turn_max_rad_s / turn_up_s * step_s;
   turn_rad_s_ = turning_ ? std::clamp(turn, turn_rad_s_ - more, turn_rad_s_ + more) : 0;
   intent.hold = false;

@@ -164,5 +164,26 @@ TEST(SkidSteer, SteeringIsCutSoThatTheBendStays) {
   EXPECT_LT(fast.left_mps, fast.right_mps);  // to the left
 }
 
+TEST(Autopilot, ATurnGoesOnTheWayThatItBeganWhereTheWayOnLiesBehind) {
+  const Motors motors = load_vehicle("groundhog").motors;
+  DriveSettings settings;
+  settings.lead_in_s = 0;
+  Autopilot pilot(settings, motors, 100);
+  // Straight behind, now a hair to the left, now a hair to the right, as jolts have it.
+  constexpr double step_s = 0.01;
+  Intent intent;
+  for (int n = 0; n < 1000; ++n) {
+    Guide guide;
+    guide.bearing_rad = n % 2 == 0 ? 3.14 : -3.14;
+    intent = pilot.want(n * step_s, step_s, 10, guide);
+    EXPECT_GE(intent.wobble_rad_s, 0) << "after " << n << " steps";
+  }
+  EXPECT_DOUBLE_EQ(intent.wobble_rad_s, motors.turn_max_rad_s);
+  Guide beyond;  // turned past it: the short way back
+  beyond.bearing_rad = -0.5;
+  for (int n = 1000; n < 1400; ++n) intent = pilot.want(n * step_s, step_s, 10, beyond);
+  EXPECT_DOUBLE_EQ(intent.wobble_rad_s, -motors.turn_max_rad_s);
+}
+
 }  // namespace
 }  // namespace adit
