@@ -402,25 +402,33 @@ void DexelUnion::add(std::span<const Tetrahedron> tetrahedra) {
         for (int k = 0; k < 4; ++k) corner[n][k] = corner_of(tetrahedra[n][k], grid);
       },
       4096);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> work;  // (tile, tetrahedron)
-  for (std::uint32_t n = 0; n < corner.size(); ++n) {
-    const auto& c = corner[n];
-    const auto [x_low, x_high] = std::minmax({c[0].x, c[1].x, c[2].x, c[3].x});
-    const auto [y_low, y_high] = std::minmax({c[0].y, c[1].y, c[2].y, c[3].y});
-    const Range columns = axes_within(static_cast<double>(x_low), static_cast<double>(x_high), grid, grid.width),
-                rows = axes_within(static_cast<double>(y_low), static_cast<double>(y_high), grid, grid.height);
-    if (columns.begin >= columns.end) continue;
-    for (int tj = rows.begin / tile_cells; tj * tile_cells < rows.end; ++tj)
-      for (int ti = columns.begin / tile_cells; ti * tile_cells < columns.end; ++ti)
-        work.emplace_back(static_cast<std::uint32_t>(tj * impl_->across + ti), n);
+  // each(tile, tetrahedron), tetrahedra rising
+  const auto for_tiles = [&](const auto& each) {
+    for (std::uint32_t n = 0; n < corner.size(); ++n) {
+      const auto& c = corner[n];
+      const auto [x_low, x_high] = std::minmax({c[0].x, c[1].x, c[2].x, c[3].x});
+      const auto [y_low, y_high] = std::minmax({c[0].y, c[1].y, c[2].y, c[3].y});
+      const Range columns = axes_within(static_cast<double>(x_low), static_cast<double>(x_high), grid, grid.width),
+                  rows = axes_within(static_cast<double>(y_low), static_cast<double>(y_high), grid, grid.height);
+      if (columns.begin >= columns.end) continue;
+      for (int tj = rows.begin / tile_cells; tj * tile_cells < rows.end; ++tj)
+        for (int ti = columns.begin / tile_cells; ti * tile_cells < columns.end; ++ti)
+          each(static_cast<size_t>(tj) * impl_->across + ti, n);
+    }
+  };
+  // Sorted by tile: counted, then put in place.
+  std::vector<std::uint32_t> begin(impl_->tiles.size() + 1, 0);
+  for_tiles([&](size_t tile, std::uint32_t) { ++begin[tile + 1]; });
+  std::vector<std::uint32_t> busy;  // tiles with work
+  for (std::uint32_t t = 0; t < impl_->tiles.size(); ++t) {
+    if (begin[t + 1] > 0) busy.push_back(t);
+    begin[t + 1] += begin[t];
   }
-  std::sort(work.begin(), work.end());
-  std::vector<size_t> begin;  // of each tile's share of the work
-  for (size_t w = 0; w < work.size(); ++w)
-    if (w == 0 || work[w].first != work[w - 1].first) begin.push_back(w);
-  begin.push_back(work.size());
-  parallel_for(begin.size() - 1, [&](size_t k) {
-    for (size_t w = begin[k]; w < begin[k + 1]; ++w) impl_->add_to_tile(work[w].first, corner[work[w].second]);
+  std::vector<std::uint32_t> work(begin.back()), next = begin;
+  for_tiles([&](size_t tile, std::uint32_t n) { work[next[tile]++] = n; });
+  parallel_for(busy.size(), [&](size_t k) {
+    const std::uint32_t t = busy[k];
+    for (std::uint32_t w = begin[t]; w < begin[t + 1]; ++w) impl_->add_to_tile(t, corner[work[w]]);
   });
 }
 

@@ -80,11 +80,14 @@ void add_swept(const Log& log, int laser, const Trajectory& X_MB, const VolumeSe
     std::vector<std::vector<FanBeam>> fans(end - begin + 1);
     parallel_for(fans.size(),
                  [&](size_t n) { fans[n] = fan_of(log, laser, sections[begin + n].scan, X_MB, settings.beam_step); });
-    std::vector<Tetrahedron> wedges;
-    for (size_t n = 0; n + 1 < fans.size(); ++n)
+    std::vector<std::vector<Tetrahedron>> wedges(fans.size() - 1);
+    parallel_for(wedges.size(), [&](size_t n) {
       if (joined(sections[begin + n], sections[begin + n + 1], settings))
-        for (size_t k = 0; k + 1 < fans[n].size(); ++k) add_wedge(fans[n], fans[n + 1], k, settings, wedges);
-    solid.add(wedges);
+        for (size_t k = 0; k + 1 < fans[n].size(); ++k) add_wedge(fans[n], fans[n + 1], k, settings, wedges[n]);
+    });
+    std::vector<Tetrahedron> all;
+    for (const auto& some : wedges) all.insert(all.end(), some.begin(), some.end());
+    solid.add(all);
     progress("carve " + log.rig.mounts[laser].name, static_cast<double>(end), static_cast<double>(sections.size() - 1));
   }
 }
