@@ -220,8 +220,7 @@ void write_messages(std::ostream& out, const Log& log, const Truth* truth) {
     const Mount& mount = log.rig.mounts[t.laser];
     const Scans& scans = log.scans[t.laser];
     if (!scans.tilt_rad.empty())
-      bag.write(moving, t.time,
-                tf_message(seq, t.time, "base_link", mount.name, scans.X_BS(mount, t.scan)));
+      bag.write(moving, t.time, tf_message(seq, t.time, "base_link", mount.name, scans.X_BS(mount, t.scan)));
     bag.write(scan_topics[t.laser], t.time, scan_message(mount, scans, t.scan, t.time));
   }
   bag.close();

@@ -176,10 +176,6 @@ Mount mount_of(const std::string& name, const Lines& device) {
   return mount;
 }
 
-}  // namespace
-
-namespace {
-
 // What a log's lines add up to.
 struct Devices {
   Lines front, rear;

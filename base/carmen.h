@@ -28,9 +28,10 @@ struct CarmenLog {
 /// an end, as a logger leaves it that is stopped, is left out with a note.
 CarmenLog read_carmen(const std::string& file);
 
-/// Writes the horizontal laser while its mount is level; others have no place in the format. Poses of the laser lines are the odometry, which a
-/// cart without wheel encoders does not have: 0. With `truth` each scan is preceded by its TRUEPOS. No echo and
-/// unreadable beams are told as 81.91 m, as an LMS in its default mode does. Error where no laser is horizontal.
+/// Writes the horizontal laser while its mount is level; others have no place in the format. Poses of the laser lines
+/// are the odometry, which a cart without wheel encoders does not have: 0. With `truth` each scan is preceded by its
+/// TRUEPOS. No echo and unreadable beams are told as 81.91 m, as an LMS in its default mode does. Error where no laser
+/// is horizontal.
 void write_carmen(const std::string& file, const Log& log, CarmenStyle style, const Truth* truth = nullptr);
 
 }  // namespace adit

@@ -55,9 +55,8 @@ struct Estimate {
   std::vector<std::string> notes;  // what was dropped or could not be done, one sentence each
 };
 
-/// DIR/trajectory.tum open_loop.tum planar.tum path_covariance.txt grid.pgm grid.yaml points.ply surface.ply graph.g2o
-/// map.json. What the estimate
-/// lacks has no file. map.json comes last: a folder that holds it is whole.
+/// DIR/trajectory.tum open_loop.tum planar.tum path_covariance.txt grid.pgm grid.yaml ribs.geojson ribs.dxf points.ply
+/// surface.ply graph.g2o map.json. What the estimate lacks has no file. map.json comes last: a folder that holds it is whole.
 void save_estimate(const std::string& dir, const Estimate& estimate);
 /// The same; the grid's cells come back as free, occupied or unknown. A missing or foreign file is an Error.
 Estimate load_estimate(const std::string& dir);

@@ -18,9 +18,8 @@ double LaserModel::beam_offset_s(int k) const {
 
 double LaserModel::least_reflectivity(double range_m) const {
   if (chart_range_m.empty())
-    return range_m <= 4 || reflectivity_at_4m == 0
-               ? reflectivity_at_4m
-               : reflectivity_at_4m * std::pow(range_m / 4, reflectivity_exponent);
+    return range_m <= 4 || reflectivity_at_4m == 0 ? reflectivity_at_4m
+                                                   : reflectivity_at_4m * std::pow(range_m / 4, reflectivity_exponent);
   const size_t next = static_cast<size_t>(std::upper_bound(chart_range_m.begin(), chart_range_m.end(), range_m) -
                                           chart_range_m.begin());
   if (next == 0) return chart_reflectivity.front();

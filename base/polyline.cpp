@@ -49,4 +49,14 @@ double signed_area(const std::vector<Vec2>& ring) {
   return twice / 2;
 }
 
+bool contains(const std::vector<Vec2>& ring, const Vec2& p) {
+  bool inside = false;
+  for (size_t k = 0; k < ring.size(); ++k) {
+    const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      inside = !inside;
+  }
+  return inside;
+}
+
 }  // namespace adit

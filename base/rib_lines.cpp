@@ -88,16 +88,6 @@ nlohmann::json json_of(const std::vector<Vec2>& ring) {
   return points;
 }
 
-bool contains(const std::vector<Vec2>& ring, const Vec2& p) {
-  bool inside = false;
-  for (size_t k = 0; k < ring.size(); ++k) {
-    const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
-    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-      inside = !inside;
-  }
-  return inside;
-}
-
 }  // namespace
 
 std::vector<std::vector<Vec2>> rib_lines(const Grid& grid, const RibLineSettings& settings) {

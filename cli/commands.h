@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/console.h"
-#include "cli/parts.h"
+#include "cli/estimate_parts.h"
 
 #include <string>
 #include <vector>

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "cli/convert.h"
-#include "cli/parts.h"
+#include "cli/estimate_parts.h"
 
 #include <fcntl.h>
 #include <spawn.h>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "worlds/route_graph.h"
 
+#include "base/polyline.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -89,15 +91,7 @@ std::pair<double, bool> round_of(const World& world, const std::vector<Leg>& leg
     for (size_t k = 0; k + 1 < centre.size(); ++k)
       line.push_back(centre[leg.forward ? k : centre.size() - 1 - k].head<2>());
   }
-  double area = 0;
-  bool inside = false;
-  for (size_t i = 0; i < line.size(); ++i) {
-    const Vec2 a = line[i], b = line[(i + 1) % line.size()];
-    area += a.x() * b.y() - a.y() * b.x();
-    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-      inside = !inside;
-  }
-  return {area, inside};
+  return {signed_area(line), contains(line, p)};
 }
 
 }  // namespace

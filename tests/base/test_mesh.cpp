@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/error.h"
 #include "base/files.h"
 #include "base/mesh.h"
 #include "base/ply.h"
 #include "base/points.h"
 #include "base/rng.h"
+#include "tests/support/errors.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -20,15 +20,6 @@ namespace {
 
 std::string temporary(const std::string& name) {
   return ::testing::TempDir() + "adit_mesh_" + name;
-}
-
-std::string error_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
 }
 
 void expect_same(const Mesh& a, const Mesh& b) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/cloud.h"
-#include "base/error.h"
 #include "base/files.h"
 #include "base/grid.h"
 #include "base/path_file.h"
+#include "tests/support/errors.h"
 
 #include <gmock/gmock.h>
 
@@ -18,15 +18,6 @@ const std::string folder = ::testing::TempDir() + "adit_path_file";
 
 Trajectory bent() {
   return {{0.5, 1.5, 2}, {pose_of({1, 2, 3}, 0.1), pose_of({4, 5, 6}, 2, 0.3, -0.2), pose_of({7, 8, 9}, -3)}};
-}
-
-std::string error_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
 }
 
 TEST(PathFile, KittiPosesComeBackWithTheStampsThatTheyAreGiven) {

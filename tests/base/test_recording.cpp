@@ -4,6 +4,7 @@
 #include "base/h5.h"
 #include "base/recording.h"
 #include "base/rng.h"
+#include "tests/support/errors.h"
 
 #include <gmock/gmock.h>
 
@@ -105,16 +106,6 @@ void expect_same(const Rig& a, const Rig& b) {
     EXPECT_EQ(m.laser.interval_s, n.laser.interval_s);
     EXPECT_EQ(m.laser.sigma_m, n.laser.sigma_m);
   }
-}
-
-template <class F>
-std::string error_of(const F& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
 }
 
 TEST(Recording, ALogComesBackAsItWas) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/error.h"
 #include "base/h5.h"
 #include "base/parallel.h"
 #include "sensors/sensors.h"
 #include "tests/sensors/scenes.h"
+#include "tests/support/errors.h"
 #include "tests/support/shapes.h"
 
 #include <gmock/gmock.h>
@@ -27,16 +27,6 @@ Drive round_the_ring(double duration_s) {
 template <class T>
 bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-template <class F>
-std::string error_of(const F& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
 }
 
 TEST(Sensors, TheSameSeedGivesTheSameRecordingOnAnyNumberOfThreads) {

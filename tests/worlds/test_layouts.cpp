@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/error.h"
 #include "base/files.h"
 #include "rays/caster.h"
+#include "tests/support/errors.h"
 #include "worlds/plan.h"
 #include "worlds/worlds.h"
 
@@ -61,15 +61,6 @@ WorldSettings district(double length_m) {
   s.district.length_m = length_m;
   s.district.stopping_share = s.district.missing_share = 0.2;
   return s;
-}
-
-std::string error_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
 }
 
 double length_of(const MinePlan& plan) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/parts.h"
+#include "cli/estimate_parts.h"
 
 #include "base/cloud.h"
 #include "base/error.h"
