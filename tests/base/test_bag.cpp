@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/rng.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -17,10 +18,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-std::string in_folder(const std::string& name) {
-  return ::testing::TempDir() + "adit_bag_" + name;
-}
 
 Log some_log(int scans) {
   Log log{{.name = "pair", .mounts = {}}, {}};
@@ -71,8 +68,8 @@ void expect_same_scans(const Log& a, const Log& b, size_t scans) {
 TEST(Bag, ALogComesBackWithItsScansMountsAndPath) {
   const Log log = some_log(14);
   const Truth truth = truth_of(log);
-  write_bag(in_folder("whole.bag"), log, &truth);
-  const BagLog back = read_bag(in_folder("whole.bag"));
+  write_bag(scratch("whole.bag"), log, &truth);
+  const BagLog back = read_bag(scratch("whole.bag"));
   EXPECT_THAT(back.notes, IsEmpty());
   expect_same_scans(back.log, log, 14);
   for (size_t i = 0; i < 2; ++i) {
@@ -91,18 +88,18 @@ TEST(Bag, ALogComesBackWithItsScansMountsAndPath) {
 }
 
 TEST(Bag, TheSameLogGivesTheSameBytes) {
-  write_bag(in_folder("a.bag"), some_log(5));
-  write_bag(in_folder("b.bag"), some_log(5));
-  EXPECT_TRUE(read_text(in_folder("a.bag")) == read_text(in_folder("b.bag")));
+  write_bag(scratch("a.bag"), some_log(5));
+  write_bag(scratch("b.bag"), some_log(5));
+  EXPECT_TRUE(read_text(scratch("a.bag")) == read_text(scratch("b.bag")));
 }
 
 TEST(Bag, OfABagWhoseEndIsCutOffTheScansBeforeAreReadAndItIsSaid) {
   const Log log = some_log(600);  // more than one chunk
-  write_bag(in_folder("long.bag"), log);
-  const std::string bytes = read_text(in_folder("long.bag"));
+  write_bag(scratch("long.bag"), log);
+  const std::string bytes = read_text(scratch("long.bag"));
   ASSERT_GT(bytes.size(), size_t{1600000});
-  write_text(in_folder("cut.bag"), bytes.substr(0, 1200000));
-  const BagLog back = read_bag(in_folder("cut.bag"));
+  write_text(scratch("cut.bag"), bytes.substr(0, 1200000));
+  const BagLog back = read_bag(scratch("cut.bag"));
   ASSERT_EQ(back.notes.size(), 1u);
   EXPECT_THAT(back.notes[0], HasSubstr("cut off"));
   // 1.2 MB of some 1.6 KB a scan of each of two lasers, the broken chunk's whole messages among them.
@@ -113,9 +110,9 @@ TEST(Bag, OfABagWhoseEndIsCutOffTheScansBeforeAreReadAndItIsSaid) {
 
 TEST(Bag, WhatIsNoBagIsAnErrorWithItsCause) {
   const auto error_of = [](const std::string& text) -> std::string {
-    write_text(in_folder("bad.bag"), text);
+    write_text(scratch("bad.bag"), text);
     try {
-      read_bag(in_folder("bad.bag"));
+      read_bag(scratch("bad.bag"));
     } catch (const Error& e) {
       return e.what();
     }
@@ -124,19 +121,19 @@ TEST(Bag, WhatIsNoBagIsAnErrorWithItsCause) {
   EXPECT_THAT(error_of("FLASER 1 2 3"), HasSubstr("is not a ROS 1 bag"));
   EXPECT_THAT(error_of("#ROSBAG V1.2\n"), HasSubstr("version 1"));
   EXPECT_THAT(error_of("#ROSBAG V2.0\n"), HasSubstr("no message of sensor_msgs/LaserScan"));
-  EXPECT_THROW(read_bag(in_folder("absent.bag")), Error);
+  EXPECT_THROW(read_bag(scratch("absent.bag")), Error);
 }
 
 // Bits turned anywhere make an Error or notes, never a crash; the sanitizers look on.
 TEST(Bag, DamageAnywhereIsSurvived) {
-  write_bag(in_folder("sound.bag"), some_log(4));
-  const std::string sound = read_text(in_folder("sound.bag"));
+  write_bag(scratch("sound.bag"), some_log(4));
+  const std::string sound = read_text(scratch("sound.bag"));
   for (std::uint64_t i = 0; i < 200; ++i) {
     std::string bytes = sound;
     bytes[random_bits(3, Draw::test, i) % bytes.size()] ^= static_cast<char>(1 + random_bits(4, Draw::test, i) % 255);
-    write_text(in_folder("damaged.bag"), bytes);
+    write_text(scratch("damaged.bag"), bytes);
     try {
-      read_bag(in_folder("damaged.bag"));
+      read_bag(scratch("damaged.bag"));
     } catch (const Error&) {
     }
   }
@@ -148,19 +145,19 @@ bool ros_is_here() {
 }
 
 int python(const std::string& program) {
-  write_text(in_folder("ask.py"), program);
-  return std::system(("/usr/bin/python3 " + in_folder("ask.py") + " >" + in_folder("ask.txt") + " 2>&1").c_str());
+  write_text(scratch("ask.py"), program);
+  return std::system(("/usr/bin/python3 " + scratch("ask.py") + " >" + scratch("ask.txt") + " 2>&1").c_str());
 }
 
 TEST(Bag, RossOwnToolsReadTheSameRangesAndKnowTheTypes) {
   if (!ros_is_here()) GTEST_SKIP() << "needs python3-rosbag and the messages: ci/setup --peers";
   const Log log = some_log(20);
   const Truth truth = truth_of(log);
-  write_bag(in_folder("ros.bag"), log, &truth);
+  write_bag(scratch("ros.bag"), log, &truth);
   std::string program =
       "import rosbag, math, genpy.dynamic\n"
       "bag = rosbag.Bag('" +
-      in_folder("ros.bag") +
+      scratch("ros.bag") +
       "')\n"
       "info = bag.get_type_and_topic_info()\n"
       "assert info.topics['/front/scan'].message_count == 20, info\n"
@@ -178,33 +175,33 @@ TEST(Bag, RossOwnToolsReadTheSameRangesAndKnowTheTypes) {
       "odom = [m for _, m, _ in bag.read_messages(topics=['/truth/odom'])]\n"
       "assert abs(odom[-1].pose.pose.position.x - 3.99) < 1e-9, odom[-1]\n"
       "print('%d %d %.6f' % (n, bad, sum))\n";
-  ASSERT_EQ(python(program), 0) << read_text(in_folder("ask.txt"));
+  ASSERT_EQ(python(program), 0) << read_text(scratch("ask.txt"));
   double sum = 0;
   int n = 0, bad = 0;
   for (const float r : log.scans[0].range_m) std::isfinite(r) ? (sum += static_cast<double>(r), ++n) : ++bad;
   char expected[80];
   std::snprintf(expected, sizeof expected, "%d %d %.6f\n", n, bad, sum);
-  EXPECT_EQ(read_text(in_folder("ask.txt")), expected);
+  EXPECT_EQ(read_text(scratch("ask.txt")), expected);
 }
 
 TEST(Bag, WhatRosPacksWithBz2AndLz4IsReadTheSame) {
   if (!ros_is_here()) GTEST_SKIP() << "needs python3-rosbag and the messages: ci/setup --peers";
   const Log log = some_log(20);
-  write_bag(in_folder("plain.bag"), log);
+  write_bag(scratch("plain.bag"), log);
   for (const std::string packing : {"bz2", "lz4"}) {
-    const std::string packed = in_folder(packing + ".bag");
+    const std::string packed = scratch(packing + ".bag");
     ASSERT_EQ(python("import rosbag, sys\n"
                      "try: out = rosbag.Bag('" +
                      packed + "', 'w', compression='" + packing +
                      "')\n"
                      "except Exception as e: print(e); sys.exit(9)\n"
                      "for topic, m, t in rosbag.Bag('" +
-                     in_folder("plain.bag") +
+                     scratch("plain.bag") +
                      "').read_messages(): out.write(topic, m, t)\n"
                      "out.close()\n"),
               0)
-        << packing << ": " << read_text(in_folder("ask.txt"));
-    EXPECT_LT(std::filesystem::file_size(packed), std::filesystem::file_size(in_folder("plain.bag")));
+        << packing << ": " << read_text(scratch("ask.txt"));
+    EXPECT_LT(std::filesystem::file_size(packed), std::filesystem::file_size(scratch("plain.bag")));
     expect_same_scans(read_bag(packed).log, log, 20);
   }
 }

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/rng.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 
@@ -13,10 +14,6 @@ namespace adit {
 namespace {
 
 using ::testing::HasSubstr;
-
-std::string in_folder(const std::string& name) {
-  return ::testing::TempDir() + "adit_carmen_" + name;
-}
 
 Log a_log(const LaserModel& laser) {
   Log log;
@@ -52,8 +49,8 @@ TEST(Carmen, ALogComesBackWithItsRangesStampsAndRasterInEitherStyle) {
   for (const char* raster : {"180/1", "180/0.5"})
     for (CarmenStyle style : {CarmenStyle::flaser, CarmenStyle::robotlaser}) {
       const Log log = a_log(load_laser("lms200", 38400, {"", raster}));
-      write_carmen(in_folder("a.log"), log, style);
-      const CarmenLog back = read_carmen(in_folder("a.log"));
+      write_carmen(scratch("a.log"), log, style);
+      const CarmenLog back = read_carmen(scratch("a.log"));
       ASSERT_EQ(back.log.scans.size(), 1u);
       const LaserModel &told = log.rig.mounts[0].laser, &got = back.log.rig.mounts[0].laser;
       EXPECT_EQ(got.beams, told.beams);
@@ -76,8 +73,8 @@ TEST(Carmen, ALogComesBackWithItsRangesStampsAndRasterInEitherStyle) {
 TEST(Carmen, TruePosesComeBackInThePlane) {
   const Log log = a_log(load_laser("lms200", 38400));
   const Truth truth = a_truth(log);
-  write_carmen(in_folder("t.log"), log, CarmenStyle::flaser, &truth);
-  const CarmenLog back = read_carmen(in_folder("t.log"));
+  write_carmen(scratch("t.log"), log, CarmenStyle::flaser, &truth);
+  const CarmenLog back = read_carmen(scratch("t.log"));
   ASSERT_EQ(back.true_path.size(), 20u);
   for (size_t n = 0; n < 20; ++n) {
     const Pose2 was = flatten(truth.drive.path.at(truth.scans[0].stamp_s[n])), is = flatten(back.true_path.X_WB[n]);
@@ -89,13 +86,13 @@ TEST(Carmen, TruePosesComeBackInThePlane) {
 
 TEST(Carmen, LinesOfRealLogsAreRead) {
   // As CARMEN and its forerunners wrote them: an even count leaves out the last beam; remissions and turn axis came later.
-  write_text(in_folder("real.clf"),
+  write_text(scratch("real.clf"),
              "# CARMEN Logfile\n"
              "PARAM robot_length 0.6 976052857.1 nohost 0\n"
              "FLASER 4 1.0 2.00 81.91 3.50 0.5 0.1 0.2 1.5 -0.25 0.7 976052857.337 nohost 0.250\n"
              "ODOM 0 0 0 0 0 0 976052857.4 nohost 0.3\n"
              "FLASER 4 1.0 2.00 3.0 3.50 0.5 0.1 0.2 1.6 -0.25 0.7 976052857.837 nohost 0.750\r\n");
-  const CarmenLog old = read_carmen(in_folder("real.clf"));
+  const CarmenLog old = read_carmen(scratch("real.clf"));
   EXPECT_EQ(old.log.scans[0].beams, 4);
   EXPECT_NEAR(old.log.rig.mounts[0].laser.fov_rad, 135 * M_PI / 180, 1e-9);
   EXPECT_NEAR(flatten(old.log.rig.mounts[0].X_BS).yaw_rad, -22.5 * M_PI / 180, 1e-9);
@@ -106,8 +103,8 @@ TEST(Carmen, LinesOfRealLogsAreRead) {
   const std::string head = "ROBOTLASER1 0 -1.570796 3.141593 1.570796 81.92 0.01 0 3 1 2 81.92 ";
   const std::string poses = "1 2 0.1 3 4 0.2 0 0 0.5 0.3 ", stamps = "976052857.3 host 0.5\n";
   for (const std::string& middle : {poses, "0 " + poses + "0 ", "3 7 8 9 " + poses + "1e8 "}) {
-    write_text(in_folder("new.clf"), head + middle + stamps);
-    const CarmenLog log = read_carmen(in_folder("new.clf"));
+    write_text(scratch("new.clf"), head + middle + stamps);
+    const CarmenLog log = read_carmen(scratch("new.clf"));
     EXPECT_EQ(log.log.scans[0][0][1], 2.0F) << middle;
     EXPECT_EQ(log.log.scans[0][0][2], INFINITY);
     EXPECT_NEAR(log.odometry.X_WB[0].translation().y(), 4, 1e-12) << middle;
@@ -116,9 +113,9 @@ TEST(Carmen, LinesOfRealLogsAreRead) {
 
 TEST(Carmen, BadLinesAreNamedByFileAndLine) {
   const auto error_of = [](const std::string& text) -> std::string {
-    write_text(in_folder("bad.log"), text);
+    write_text(scratch("bad.log"), text);
     try {
-      read_carmen(in_folder("bad.log"));
+      read_carmen(scratch("bad.log"));
     } catch (const Error& e) {
       return e.what();
     }
@@ -135,8 +132,8 @@ TEST(Carmen, BadLinesAreNamedByFileAndLine) {
 
 TEST(Carmen, ALastLineThatBreaksOffIsLeftOutWithANote) {
   const std::string good = "FLASER 2 1 2 0 0 0 0 0 0 1 h 1\n";
-  write_text(in_folder("cut.log"), good + "FLASER 2 1 2 0 0 0 0");
-  const CarmenLog log = read_carmen(in_folder("cut.log"));
+  write_text(scratch("cut.log"), good + "FLASER 2 1 2 0 0 0 0");
+  const CarmenLog log = read_carmen(scratch("cut.log"));
   EXPECT_EQ(log.log.scans[0].size(), 1u);
   ASSERT_EQ(log.notes.size(), 1u);
   EXPECT_THAT(log.notes[0], HasSubstr("cut.log:2: this line is cut short"));
@@ -145,7 +142,7 @@ TEST(Carmen, ALastLineThatBreaksOffIsLeftOutWithANote) {
 TEST(Carmen, ARigWithoutAHorizontalLaserCannotBeWritten) {
   Log log = a_log(load_laser("lms200", 38400));
   log.rig.mounts[0].X_BS = pose_of(Vec3::Zero(), 0, M_PI / 2);
-  EXPECT_THROW(write_carmen(in_folder("none.log"), log, CarmenStyle::flaser), Error);
+  EXPECT_THROW(write_carmen(scratch("none.log"), log, CarmenStyle::flaser), Error);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "base/cloud.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 
@@ -15,10 +16,6 @@ namespace adit {
 namespace {
 
 using ::testing::HasSubstr;
-
-std::string in_folder(const std::string& name) {
-  return ::testing::TempDir() + "adit_cloud_" + name;
-}
 
 // A laser of three beams that drives along x at 1 m/s beside a wall at y = 2.
 struct Driven {
@@ -76,8 +73,8 @@ TEST(Cloud, EachBeamIsLaidFromWhereItsLaserTrulyWas) {
 
 TEST(Cloud, PcdComesBackBitForBitButForFloats) {
   const PointCloud c = few();
-  write_pcd(in_folder("a.pcd"), c);
-  const PointCloud back = read_pcd(in_folder("a.pcd"));
+  write_pcd(scratch("a.pcd"), c);
+  const PointCloud back = read_pcd(scratch("a.pcd"));
   ASSERT_EQ(back.size(), c.size());
   for (size_t i = 0; i < c.size(); ++i) EXPECT_EQ(back.p[i], c.p[i]);  // halves and quarters are floats
   EXPECT_EQ(back.stamp_s, c.stamp_s);
@@ -86,10 +83,10 @@ TEST(Cloud, PcdComesBackBitForBitButForFloats) {
 
 TEST(Cloud, AsciiPcdWithForeignFieldsIsRead) {
   write_text(
-      in_folder("b.pcd"),
+      scratch("b.pcd"),
       "# .PCD v.7\nVERSION .7\nFIELDS rgb x y z n\nSIZE 4 4 4 4 4\nTYPE U F F F F\nCOUNT 1 1 1 1 3\nWIDTH 2\nHEIGHT 1\n"
       "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n7 1 2 3 0 0 1\n8 4 5 6.5 0 0 1\n");
-  const PointCloud c = read_pcd(in_folder("b.pcd"));
+  const PointCloud c = read_pcd(scratch("b.pcd"));
   ASSERT_EQ(c.size(), 2u);
   EXPECT_EQ(c.p[1], Vec3(4, 5, 6.5));
   EXPECT_TRUE(c.stamp_s.empty());
@@ -97,16 +94,16 @@ TEST(Cloud, AsciiPcdWithForeignFieldsIsRead) {
 
 TEST(Cloud, BadPcdIsNamedByItsCause) {
   const auto error_of = [](const std::string& text) -> std::string {
-    write_text(in_folder("bad.pcd"), text);
+    write_text(scratch("bad.pcd"), text);
     try {
-      read_pcd(in_folder("bad.pcd"));
+      read_pcd(scratch("bad.pcd"));
     } catch (const Error& e) {
       return e.what();
     }
     return "no error";
   };
-  write_pcd(in_folder("whole.pcd"), few());
-  const std::string whole = read_text(in_folder("whole.pcd"));
+  write_pcd(scratch("whole.pcd"), few());
+  const std::string whole = read_text(scratch("whole.pcd"));
   EXPECT_THAT(error_of(whole.substr(0, whole.size() - 3)), HasSubstr("bad.pcd: is cut short"));
   EXPECT_THAT(error_of("ply\n"), HasSubstr("no DATA line"));
   EXPECT_THAT(error_of("FIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nPOINTS 1\nDATA ascii\n1 2\n"),
@@ -125,7 +122,7 @@ std::vector<T> values_in(const std::string& file) {
 
 TEST(Cloud, AKittiFolderHoldsPointsLabelsAndPosesThatGiveTheCloudAgain) {
   const Driven d = driven();
-  const std::string dir = in_folder("kitti");
+  const std::string dir = scratch("kitti");
   EXPECT_EQ(write_kitti(dir, d.log, d.truth), 4u);
   const LabelledCloud cloud = true_cloud(d.log, d.truth);
   std::istringstream poses(read_text(dir + "/poses.txt")), times(read_text(dir + "/times.txt"));

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/estimate.h"
 #include "base/files.h"
+#include "tests/support/scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string fresh_folder(const std::string& name) {
-  const fs::path dir = fs::path(testing::TempDir()) / ("adit_" + name);
+  const fs::path dir = fs::path(scratch(name));
   fs::remove_all(dir);
   fs::create_directories(dir);
   return dir.string();

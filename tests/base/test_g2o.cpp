@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/pose_graph.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string written(const std::string& text) {
-  const std::string file = testing::TempDir() + "adit_" + std::to_string(::getpid()) + "_graph.g2o";
+  const std::string file = scratch("graph.g2o");
   write_text(file, text);
   return file;
 }
@@ -38,7 +39,7 @@ TEST(G2o, WhatIsWrittenIsReadBackToTheBit) {
   Relative e{0, 1, {0.1, 0.2, 0.3}, Eigen::Matrix3d::Identity()};
   e.information << 3, 0.1, 0.2, 0.1, 4, 0.3, 0.2, 0.3, 1.0 / 7;
   graph.edge = {e, {2, 1, {1, 2, -3}, 2 * Eigen::Matrix3d::Identity()}};
-  const std::string file = testing::TempDir() + "adit_" + std::to_string(::getpid()) + "_graph.g2o";
+  const std::string file = scratch("graph.g2o");
   write_g2o(file, graph, {5, 3, 8});
   const GraphFile back = read_g2o(file);
   EXPECT_EQ(back.id, (std::vector<int>{5, 3, 8}));

@@ -5,6 +5,7 @@
 #include "base/points.h"
 #include "base/rng.h"
 #include "tests/support/errors.h"
+#include "tests/support/scratch.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -17,10 +18,6 @@
 
 namespace adit {
 namespace {
-
-std::string temporary(const std::string& name) {
-  return ::testing::TempDir() + "adit_mesh_" + name;
-}
 
 void expect_same(const Mesh& a, const Mesh& b) {
   EXPECT_EQ(a.face, b.face);
@@ -70,7 +67,7 @@ TEST(Mesh, AFlippedFaceOpensItsThreeEdges) {
 TEST(Mesh, APlyFileGivesTheSameMeshBack) {
   Mesh mesh = fine_box_mesh({-1, -2, 0}, {3, 2, 1.7}, 0.3);
   for (size_t i = 0; i < mesh.vertex.size(); ++i) mesh.vertex[i] *= 1 + 1e-3 * normal(1, Draw::test, i);
-  const std::string file = temporary("back.ply");
+  const std::string file = scratch("back.ply");
   write_mesh(file, mesh);
   expect_same(read_mesh(file), mesh);
 }
@@ -80,7 +77,7 @@ TEST(Mesh, APlainMeshComesBackWithoutColumnsThatItHadNot) {
   mesh.label.clear();
   mesh.part.clear();
   mesh.reflectivity.clear();
-  const std::string file = temporary("plain.ply");
+  const std::string file = scratch("plain.ply");
   write_mesh(file, mesh);
   expect_same(read_mesh(file), mesh);
 }
@@ -91,7 +88,7 @@ const char* ascii_square =
     "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 7\n";
 
 TEST(Mesh, AnAsciiPolygonIsFannedIntoTriangles) {
-  const std::string file = temporary("square.ply");
+  const std::string file = scratch("square.ply");
   write_text(file, ascii_square);
   const Mesh mesh = read_mesh(file);
   ASSERT_EQ(mesh.face.size(), 2u);
@@ -111,13 +108,13 @@ TEST(Mesh, ABigEndianFileIsRead) {
   for (double v : {0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 4.0, 0.0}) big(v);
   big(std::uint8_t{3});
   for (std::uint16_t v : {0, 1, 2}) big(v);
-  const std::string file = temporary("big.ply");
+  const std::string file = scratch("big.ply");
   write_text(file, text);
   EXPECT_DOUBLE_EQ(read_mesh(file).area(0), 6);
 }
 
 TEST(Mesh, ATruncatedPlyNamesTheFile) {
-  const std::string file = temporary("cut.ply");
+  const std::string file = scratch("cut.ply");
   write_mesh(file, fine_box_mesh({0, 0, 0}, {1, 1, 1}, 0.3));
   const std::string whole = read_text(file);
   for (size_t bytes : {size_t{0}, size_t{20}, size_t{200}, whole.size() / 2, whole.size() - 1}) {
@@ -130,20 +127,20 @@ TEST(Mesh, ATruncatedPlyNamesTheFile) {
 TEST(Mesh, AFaceThatNamesAVertexThatIsNotThereIsRefused) {
   std::string text = ascii_square;
   text.replace(text.find("4 0 1 2 3"), 9, "4 0 1 2 4");
-  const std::string file = temporary("index.ply");
+  const std::string file = scratch("index.ply");
   write_text(file, text);
   EXPECT_NE(error_of([&] { read_mesh(file); }).find("vertex 4"), std::string::npos);
 }
 
 TEST(Mesh, AFileOfAnotherKindIsRefused) {
-  const std::string file = temporary("foreign.ply");
+  const std::string file = scratch("foreign.ply");
   write_text(file, "solid cube\nfacet normal 0 0 1\n");
   EXPECT_NE(error_of([&] { read_mesh(file); }).find("does not begin with 'ply'"), std::string::npos);
 }
 
 TEST(Mesh, GlbHoldsEveryTriangleOnceAndOneMaterialALabel) {
   const Mesh mesh = box_mesh({0, 0, 0}, {1, 2, 3});
-  const std::string file = temporary("box.glb");
+  const std::string file = scratch("box.glb");
   write_glb(file, mesh);
   const std::string bytes = read_text(file);
   const auto word = [&](size_t at) {
@@ -171,7 +168,7 @@ TEST(Points, AFileGivesThePointsBackRoundedToFloat) {
     cloud.stamp_s.push_back(0.1 * i);
     cloud.laser.push_back(static_cast<std::uint8_t>(i % 4));
   }
-  const std::string file = temporary("points.ply");
+  const std::string file = scratch("points.ply");
   write_points(file, cloud);
   const PointCloud back = read_points(file);
   ASSERT_EQ(back.size(), cloud.size());
@@ -188,8 +185,8 @@ TEST(Mesh, PassageMaterialAndWetnessComeBackFromAFile) {
     mesh.material.push_back(f % 2 ? Material::coal : Material::rock_dust);
     mesh.wetness.push_back(static_cast<float>(f) / 16);
   }
-  write_mesh(temporary("rock.ply"), mesh);
-  const Mesh back = read_mesh(temporary("rock.ply"));
+  write_mesh(scratch("rock.ply"), mesh);
+  const Mesh back = read_mesh(scratch("rock.ply"));
   expect_same(mesh, back);
   EXPECT_EQ(back.passage, mesh.passage);
   EXPECT_EQ(back.material, mesh.material);
@@ -197,14 +194,14 @@ TEST(Mesh, PassageMaterialAndWetnessComeBackFromAFile) {
 }
 
 TEST(Mesh, AWavefrontFileIsReadWithPolygonsFannedAndIndicesFromEitherEnd) {
-  write_text(temporary("box.obj"),
+  write_text(scratch("box.obj"),
              "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nv 0 0 1\nv 2 0 1\nv 2 3 1\nv 0 3 1\n"
              "f 4 3 2 1\nf 5/1/1 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf -6 -5 -1 -2\nf 4 1 5 8\n");
-  const Mesh box = read_mesh(temporary("box.obj"));
+  const Mesh box = read_mesh(scratch("box.obj"));
   EXPECT_EQ(open_edges(box), 0u);
   EXPECT_NEAR(enclosed_volume(box), 6, 1e-12);
-  write_text(temporary("bad.obj"), "v 0 0 0\nf 1 2 3\n");
-  EXPECT_NE(error_of([] { read_mesh(temporary("bad.obj")); }).find("bad.obj:2: no vertex '2'"), std::string::npos);
+  write_text(scratch("bad.obj"), "v 0 0 0\nf 1 2 3\n");
+  EXPECT_NE(error_of([] { read_mesh(scratch("bad.obj")); }).find("bad.obj:2: no vertex '2'"), std::string::npos);
 }
 
 }  // namespace

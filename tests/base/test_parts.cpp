@@ -3,6 +3,7 @@
 #include "base/files.h"
 #include "base/parts.h"
 #include "base/rng.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 
@@ -68,7 +69,7 @@ Pair piece(const Rig& rig, int begin, int end) {
 }
 
 std::string fresh(const std::string& name) {
-  const std::string dir = ::testing::TempDir() + "adit_parts_" + name;
+  const std::string dir = scratch("parts_") + name;
   fs::remove_all(dir);
   return dir;
 }

@@ -4,6 +4,7 @@
 #include "base/grid.h"
 #include "base/path_file.h"
 #include "tests/support/errors.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 
@@ -14,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string folder = ::testing::TempDir() + "adit_path_file";
+const std::string folder = scratch("path_file");
 
 Trajectory bent() {
   return {{0.5, 1.5, 2}, {pose_of({1, 2, 3}, 0.1), pose_of({4, 5, 6}, 2, 0.3, -0.2), pose_of({7, 8, 9}, -3)}};

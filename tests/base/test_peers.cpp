@@ -4,6 +4,7 @@
 #include "base/files.h"
 #include "base/recording.h"
 #include "base/rng.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -15,10 +16,6 @@ namespace adit {
 namespace {
 
 using ::testing::HasSubstr;
-
-std::string in_folder(const std::string& name) {
-  return ::testing::TempDir() + "adit_peers_" + name;
-}
 
 Log a_log(int scans) {
   Log log{{.name = "one", .mounts = {{.name = "front", .laser = load_laser("lms200", 38400)}}}, {}};
@@ -53,31 +50,29 @@ TEST(Peers, H5pyReadsTheSameRangesFromTheLog) {
   if (std::system("/usr/bin/python3 -c 'import h5py' >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "needs python3-h5py: ci/setup --peers";
   const Log log = a_log(700);  // several chunks
-  save_log(in_folder("log.h5"), log);
+  save_log(scratch("log.h5"), log);
   write_text(
-      in_folder("ask.py"),
+      scratch("ask.py"),
       "import h5py\n"
       "f = h5py.File('" +
-          in_folder("log.h5") +
+          scratch("log.h5") +
           "')\n"
           "s = f['scans']['front']['ranges_mm']; v = s[:]\n"
           "print(v[v >= 0].sum(), (v == s.attrs['no_echo']).sum(), s.shape, s.compression, s.shuffle, s.fletcher32)\n");
-  ASSERT_EQ(std::system(("/usr/bin/python3 " + in_folder("ask.py") + " >" + in_folder("said.txt") + " 2>&1").c_str()),
-            0)
-      << read_text(in_folder("said.txt"));
+  ASSERT_EQ(std::system(("/usr/bin/python3 " + scratch("ask.py") + " >" + scratch("said.txt") + " 2>&1").c_str()), 0)
+      << read_text(scratch("said.txt"));
   const Sums sums = sums_of(log);
-  EXPECT_EQ(read_text(in_folder("said.txt")),
+  EXPECT_EQ(read_text(scratch("said.txt")),
             std::to_string(sums.mm) + " " + std::to_string(sums.none) + " (700, 361) gzip True True\n");
 }
 
 TEST(Peers, MrptReadsEveryScanOfACarmenLog) {
   if (std::system("command -v carmen2rawlog >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "needs carmen2rawlog of mrpt-apps: ci/setup --peers";
-  write_carmen(in_folder("mrpt.log"), a_log(37), CarmenStyle::robotlaser);
-  const std::string said = in_folder("mrpt.txt"), raw = in_folder("mrpt.rawlog");
+  write_carmen(scratch("mrpt.log"), a_log(37), CarmenStyle::robotlaser);
+  const std::string said = scratch("mrpt.txt"), raw = scratch("mrpt.rawlog");
   std::system(("rm -f " + raw).c_str());
-  ASSERT_EQ(std::system(("carmen2rawlog -i " + in_folder("mrpt.log") + " -o " + raw + " >" + said + " 2>&1").c_str()),
-            0)
+  ASSERT_EQ(std::system(("carmen2rawlog -i " + scratch("mrpt.log") + " -o " + raw + " >" + said + " 2>&1").c_str()), 0)
       << read_text(said);
   ASSERT_EQ(std::system(("rawlog-edit --info -i " + raw + " >" + said + " 2>&1").c_str()), 0) << read_text(said);
   EXPECT_THAT(read_text(said), HasSubstr("37"));

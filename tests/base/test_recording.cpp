@@ -5,6 +5,7 @@
 #include "base/recording.h"
 #include "base/rng.h"
 #include "tests/support/errors.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 
@@ -19,10 +20,6 @@ using ::testing::HasSubstr;
 
 constexpr float none = std::numeric_limits<float>::infinity();
 constexpr float unread = std::numeric_limits<float>::quiet_NaN();
-
-std::string in_folder(const std::string& name) {
-  return ::testing::TempDir() + "adit_recording_" + name;
-}
 
 Rig two_lasers() {
   Rig rig{.name = "pair", .mounts = {}};
@@ -110,8 +107,8 @@ void expect_same(const Rig& a, const Rig& b) {
 
 TEST(Recording, ALogComesBackAsItWas) {
   const Log log = small_log(23);
-  save_log(in_folder("log.h5"), log);
-  const Log back = load_log(in_folder("log.h5"));
+  save_log(scratch("log.h5"), log);
+  const Log back = load_log(scratch("log.h5"));
   expect_same(log.rig, back.rig);
   for (size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(log.scans[i].beams, back.scans[i].beams);
@@ -135,22 +132,22 @@ TEST(Recording, CodesComeBackAndOldFilesHaveNone) {
     s.code[i] = codes[i];
     s.range_m[i] = i == 1 || i == 3 || i == 4 ? none : unread;  // nothing heard, or not readable
   }
-  save_log(in_folder("codes.h5"), log);
-  const Scans back = load_log(in_folder("codes.h5")).scans[0];
+  save_log(scratch("codes.h5"), log);
+  const Scans back = load_log(scratch("codes.h5")).scans[0];
   EXPECT_EQ(back.code, s.code);
   for (size_t i = 0; i < s.range_m.size(); ++i)
     EXPECT_TRUE(back.range_m[i] == s.range_m[i] || (std::isnan(back.range_m[i]) && std::isnan(s.range_m[i]))) << i;
 }
 
 TEST(Recording, ALogOfNoScansComesBack) {
-  save_log(in_folder("none.h5"), small_log(0));
-  EXPECT_EQ(load_log(in_folder("none.h5")).scans[1].size(), 0u);
+  save_log(scratch("none.h5"), small_log(0));
+  EXPECT_EQ(load_log(scratch("none.h5")).scans[1].size(), 0u);
 }
 
 TEST(Recording, ATruthComesBackAsItWas) {
   const Truth truth = small_truth();
-  save_truth(in_folder("truth.h5"), truth);
-  const Truth back = load_truth(in_folder("truth.h5"));
+  save_truth(scratch("truth.h5"), truth);
+  const Truth back = load_truth(scratch("truth.h5"));
   expect_same(truth.rig, back.rig);
   EXPECT_EQ(truth.world, back.world);
   EXPECT_EQ(truth.drive.end, back.drive.end);
@@ -180,26 +177,26 @@ TEST(Recording, ATruthComesBackAsItWas) {
 
 TEST(Recording, TheSameRecordingGivesTheSameBytes) {
   const Log log = small_log(20000);  // several chunks, the last one not full
-  save_log(in_folder("a.h5"), log);
-  save_log(in_folder("b.h5"), log);
-  EXPECT_TRUE(read_text(in_folder("a.h5")) == read_text(in_folder("b.h5")));
-  save_truth(in_folder("ta.h5"), small_truth());
-  save_truth(in_folder("tb.h5"), small_truth());
-  EXPECT_TRUE(read_text(in_folder("ta.h5")) == read_text(in_folder("tb.h5")));
+  save_log(scratch("a.h5"), log);
+  save_log(scratch("b.h5"), log);
+  EXPECT_TRUE(read_text(scratch("a.h5")) == read_text(scratch("b.h5")));
+  save_truth(scratch("ta.h5"), small_truth());
+  save_truth(scratch("tb.h5"), small_truth());
+  EXPECT_TRUE(read_text(scratch("ta.h5")) == read_text(scratch("tb.h5")));
 }
 
 TEST(Recording, AFileCutAnywhereIsAnErrorThatNamesIt) {
-  const std::string whole = in_folder("whole.h5"), cut = in_folder("cut.h5");
+  const std::string whole = scratch("whole.h5"), cut = scratch("cut.h5");
   save_log(whole, small_log(300));
   const std::string bytes = read_text(whole);
   for (double share : {0.0, 0.001, 0.01, 0.1, 0.5, 0.9, 0.9999}) {
     write_text(cut, bytes.substr(0, static_cast<size_t>(share * bytes.size())));
-    EXPECT_THAT(error_of([&] { load_log(cut); }), HasSubstr("adit_recording_cut.h5: ")) << share;
+    EXPECT_THAT(error_of([&] { load_log(cut); }), HasSubstr("cut.h5: ")) << share;
   }
 }
 
 TEST(Recording, ADamagedScanIsAnErrorAndNeverAWrongRange) {
-  const std::string file = in_folder("damaged.h5");
+  const std::string file = scratch("damaged.h5");
   save_log(file, small_log(3000));
   const std::string bytes = read_text(file);
   int told = 0;
@@ -213,7 +210,7 @@ TEST(Recording, ADamagedScanIsAnErrorAndNeverAWrongRange) {
 }
 
 TEST(Recording, AFileOfAnotherKindIsNamedForWhatItIs) {
-  const std::string text = in_folder("text.h5"), truth = in_folder("t.h5"), foreign = in_folder("foreign.h5");
+  const std::string text = scratch("text.h5"), truth = scratch("t.h5"), foreign = scratch("foreign.h5");
   write_text(text, "FLASER 180 0.5 0.6\n");
   save_truth(truth, small_truth());
   H5Writer other(foreign, foreign);
@@ -221,18 +218,18 @@ TEST(Recording, AFileOfAnotherKindIsNamedForWhatItIs) {
   EXPECT_THAT(error_of([&] { load_log(text); }), HasSubstr("text.h5: is not an HDF5 file"));
   EXPECT_THAT(error_of([&] { load_log(truth); }), HasSubstr("t.h5: is an adit truth, an adit log is needed"));
   EXPECT_THAT(error_of([&] { load_log(foreign); }), HasSubstr("foreign.h5: is an HDF5 file, but not an adit log"));
-  EXPECT_THAT(error_of([&] { load_log(in_folder("absent.h5")); }), HasSubstr("absent.h5: no such file"));
-  EXPECT_THAT(error_of([&] { load_log(::testing::TempDir()); }), HasSubstr("is a folder"));
+  EXPECT_THAT(error_of([&] { load_log(scratch("absent.h5")); }), HasSubstr("absent.h5: no such file"));
+  EXPECT_THAT(error_of([&] { load_log(scratch("")); }), HasSubstr("is a folder"));
 }
 
 TEST(Recording, AFileThatCannotBeWrittenIsAnErrorAndLeavesNothing) {
-  const std::string blocked = in_folder("blocked");
+  const std::string blocked = scratch("blocked");
   write_text(blocked, "a file where a folder is needed");
   EXPECT_THROW(save_log(blocked + "/log.h5", small_log(1)), Error);
   Log log = small_log(1);
   log.rig.mounts[0].name = "a/b";
-  EXPECT_THAT(error_of([&] { save_log(in_folder("name.h5"), log); }), HasSubstr("a/b"));
-  EXPECT_FALSE(std::filesystem::exists(in_folder("name.h5")));
+  EXPECT_THAT(error_of([&] { save_log(scratch("name.h5"), log); }), HasSubstr("a/b"));
+  EXPECT_FALSE(std::filesystem::exists(scratch("name.h5")));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "base/files.h"
 #include "base/polyline.h"
 #include "base/rib_lines.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -71,7 +72,7 @@ TEST(RibLines, FilesHoldEachVoidWithItsOwnPillars) {
     return (within(p, -2, 6, 6, 14) && !within(p, 1, 3, 9, 11)) ||
            (within(p, 8, 16, 6, 14) && !within(p, 10, 14, 8, 12));
   });
-  const std::string file = ::testing::TempDir() + "adit_ribs_" + std::to_string(::getpid());
+  const std::string file = scratch("ribs");
   write_rib_lines(file, rib_lines(grid));
   const auto all = nlohmann::json::parse(read_text(file + ".geojson"));
   ASSERT_EQ(all["features"].size(), 2u);

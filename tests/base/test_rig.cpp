@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/rig.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 
@@ -36,7 +37,7 @@ TEST(Laser, AModeRasterOrRateThatTheModelLacksIsAnErrorThatListsWhatItHas) {
 }
 
 TEST(Laser, AChartMustGrowAndBePositive) {
-  const std::string file = ::testing::TempDir() + "adit_laser.toml";
+  const std::string file = scratch("laser.toml");
   const auto refused = [&](const std::string& text) {
     write_text(file, text);
     try {
@@ -53,7 +54,7 @@ TEST(Laser, AChartMustGrowAndBePositive) {
 }
 
 TEST(Rig, AModeAndARasterAreChosenByTheTableOrForAll) {
-  const std::string file = ::testing::TempDir() + "adit_rig_mode.toml";
+  const std::string file = scratch("rig_mode.toml");
   write_text(file, "[[laser]]\nname = 'a'\nmode = '8m'\n[[laser]]\nname = 'b'\nraster = '180/1'\n");
   const Rig own = load_rig(file, 38400), all = load_rig(file, 38400, {"16m", ""});
   EXPECT_EQ(own.mounts[0].laser.range_max_m, 8.183);
@@ -69,7 +70,7 @@ TEST(Rig, Cart4HasOneLaserForEachView) {
 }
 
 TEST(Rig, ABadRigIsAnsweredWithFileLineAndKey) {
-  const std::string file = ::testing::TempDir() + "adit_rig.toml";
+  const std::string file = scratch("rig.toml");
   const auto error_of = [&](const std::string& text) -> std::string {
     write_text(file, text);
     try {
@@ -80,7 +81,7 @@ TEST(Rig, ABadRigIsAnsweredWithFileLineAndKey) {
     return "no error";
   };
   EXPECT_THAT(error_of("[[laser]]\nname = 'a'\npitch_degs = 3\n"),
-              ::testing::HasSubstr("adit_rig.toml:3: unknown key 'pitch_degs' (did you mean 'pitch_deg'?)"));
+              ::testing::HasSubstr("rig.toml:3: unknown key 'pitch_degs' (did you mean 'pitch_deg'?)"));
   EXPECT_THAT(error_of("[[laser]]\nname='a'\nmodel='lms99'\n"), ::testing::HasSubstr("lms99"));
   EXPECT_THAT(error_of("name='x'\n"), ::testing::HasSubstr("no [[laser]]"));
   EXPECT_THAT(error_of("[[laser]]\nname='a'\n[[laser]]\nname='a'\n"), ::testing::HasSubstr("a second time"));

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/trajectory.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 
@@ -10,7 +11,7 @@
 namespace adit {
 namespace {
 
-const std::string folder = ::testing::TempDir() + "adit_trajectory";
+const std::string folder = scratch("trajectory");
 
 Trajectory two_poses() {
   return {{0, 2}, {pose_of({0, 0, 0}, 0), pose_of({4, 0, 2}, 1)}};

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/world.h"
+#include "tests/support/scratch.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -10,15 +11,11 @@
 namespace adit {
 namespace {
 
-std::string folder(const std::string& name) {
-  return ::testing::TempDir() + "adit_world_" + name;
-}
-
 TEST(World, AFolderGivesTheSameWorldBack) {
   World world = ring_world(20, 3, 2, 0.7);
   world.passages[2].blocked = true;
-  save_world(folder("ring"), world);
-  const World back = load_world(folder("ring"));
+  save_world(scratch("ring"), world);
+  const World back = load_world(scratch("ring"));
   EXPECT_EQ(world_hash(back), world_hash(world));
   EXPECT_EQ(back.name, world.name);
   EXPECT_EQ(back.numbers.volume_m3, world.numbers.volume_m3);
@@ -37,10 +34,10 @@ TEST(World, AFolderGivesTheSameWorldBack) {
 }
 
 TEST(World, TheSameWorldIsTheSameBytes) {
-  save_world(folder("one"), ring_world(20, 3, 2, 0.7));
-  save_world(folder("two"), ring_world(20, 3, 2, 0.7));
+  save_world(scratch("one"), ring_world(20, 3, 2, 0.7));
+  save_world(scratch("two"), ring_world(20, 3, 2, 0.7));
   for (const char* name : {"/mine.ply", "/mine.glb", "/truth.json"})
-    EXPECT_EQ(read_text(folder("one") + name), read_text(folder("two") + name)) << name;
+    EXPECT_EQ(read_text(scratch("one") + name), read_text(scratch("two") + name)) << name;
 }
 
 TEST(World, TheHashTellsAWorldThatDiffersInOneVertexOrLabel) {
@@ -64,14 +61,14 @@ TEST(World, TheFloorHasTheAreaOfTheVoidInPlan) {
 }
 
 TEST(World, TruthTellsTheAreaOfEachLabel) {
-  save_world(folder("tunnel"), tunnel_world(30, 4, 2, 1e9));
-  const auto truth = nlohmann::json::parse(read_text(folder("tunnel") + "/truth.json"));
+  save_world(scratch("tunnel"), tunnel_world(30, 4, 2, 1e9));
+  const auto truth = nlohmann::json::parse(read_text(scratch("tunnel") + "/truth.json"));
   EXPECT_NEAR(truth["materials"]["roof"]["area_m2"].get<double>(), 120, 1e-9);
   EXPECT_EQ(truth["labels"]["rib"], 3);
 }
 
 TEST(World, BrokenTruthNamesItsFile) {
-  const std::string dir = folder("broken");
+  const std::string dir = scratch("broken");
   save_world(dir, tunnel_world(30, 4, 2, 1e9));
   const std::string whole = read_text(dir + "/truth.json");
   std::string wrong_junction = whole;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command as its users call it: the built program, its files, its exit codes, its words.
 #include "base/files.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -29,14 +30,14 @@ struct Answer {
 };
 
 Answer adit_says(const std::string& words) {
-  const std::string at = ::testing::TempDir() + "adit_says_" + std::to_string(::getpid());
+  const std::string at = scratch("says");
   const int status =
       std::system((std::string(ADIT_BINARY) + " " + words + " >" + at + ".out 2>" + at + ".err").c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(at + ".out"), read_text(at + ".err")};
 }
 
 std::string fresh_folder(const std::string& name) {
-  const std::string dir = ::testing::TempDir() + "adit_cli_" + std::to_string(::getpid()) + "_" + name;
+  const std::string dir = scratch("cli_") + name;
   fs::remove_all(dir);
   return dir;
 }
@@ -378,7 +379,7 @@ TEST(Streaming, OfADriveThatIsKilledTheClosedPartsAreJoined) {
 
 TEST_F(TinyRun, AFullDiskIsReportedByFileAndNoHalfFileIsLeft) {
   const std::string dir = fresh_folder("full");
-  const std::string at = ::testing::TempDir() + "adit_full_" + std::to_string(::getpid());
+  const std::string at = scratch("full");
   // No file may grow beyond 2 MB, which a part of the truth does.
   const int status = std::system(("sh -c 'ulimit -f 4000; exec " ADIT_BINARY " drive " + tiny + " --quiet --world " +
                                   out_ + "/world -o " + dir + "' 2>" + at)

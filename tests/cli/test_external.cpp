@@ -3,6 +3,7 @@
 #include "base/files.h"
 #include "cli/external.h"
 #include "tests/support/plan_log.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -37,11 +38,11 @@ ExternalSettings python(const std::string& program, const std::vector<std::strin
 }
 
 ExternalRun outcome(const ExternalSettings& s) {
-  return run_external(s, short_log(), 42, ::testing::TempDir() + "adit_external_" + std::to_string(::getpid()));
+  return run_external(s, short_log(), 42, scratch("external"));
 }
 
 std::string log_text() {
-  return read_text(::testing::TempDir() + "adit_external_" + std::to_string(::getpid()) + "/log.txt");
+  return read_text(scratch("external") + "/log.txt");
 }
 
 const std::string writes_a_path =

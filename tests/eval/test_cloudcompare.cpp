@@ -4,6 +4,7 @@
 #include "base/mesh.h"
 #include "base/rng.h"
 #include "eval/map_error.h"
+#include "tests/support/scratch.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +41,7 @@ TEST(CloudCompare, FindsTheSameDistancesToAMicrometreAndTheSameSides) {
     text += line;
   }
   points.weight.assign(points.p_M.size(), 1);
-  const std::string folder = ::testing::TempDir() + "adit_cloudcompare";
+  const std::string folder = scratch("cloudcompare");
   std::filesystem::remove_all(folder);
   write_text(folder + "/cloud.asc", text);
   Mesh bare = mesh;

@@ -5,6 +5,7 @@
 #include "eval/evo_archive.h"
 #include "eval/path_error.h"
 #include "eval/score.h"
+#include "tests/support/scratch.h"
 
 #include <Eigen/Eigenvalues>
 #include <gmock/gmock.h>
@@ -18,7 +19,7 @@
 namespace adit {
 namespace {
 
-const std::string folder = ::testing::TempDir() + "adit_evo";
+const std::string folder = scratch("evo");
 
 // A winding path with a pose each 0.1 s, and an estimate that drifts, is turned, and has stamps of its own.
 struct Pair {

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "eval/relations.h"
+#include "tests/support/scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 std::string file_with(const std::string& name, const std::string& text) {
-  const std::string file = (std::filesystem::path(testing::TempDir()) / ("adit_relations_" + name)).string();
+  const std::string file = scratch("relations_") + name;
   write_text(file, text);
   return file;
 }
@@ -85,7 +86,7 @@ TEST(Relations, AFileIsReadAndABadLineIsNamed) {
       read_relations(file_with("bad", bad));
       FAIL() << bad;
     } catch (const Error& e) {
-      EXPECT_NE(std::string(e.what()).find("adit_relations_bad:2:"), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find("relations_bad:2:"), std::string::npos) << e.what();
     }
 }
 

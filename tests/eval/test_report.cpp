@@ -6,6 +6,7 @@
 #include "eval/page.h"
 #include "eval/render.h"
 #include "tests/eval/synthetic_run.h"
+#include "tests/support/scratch.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Folder {
-  std::string name = (fs::temp_directory_path() / ("adit_report_" + std::to_string(::getpid()))).string();
+  std::string name = scratch("report");
   ~Folder() { fs::remove_all(name); }
 };
 

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "eval/score.h"
 #include "tests/eval/exact_case.h"
+#include "tests/support/scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ namespace adit {
 namespace {
 
 std::string file_of(const std::string& name) {
-  return (std::filesystem::path(testing::TempDir()) / ("adit_score_" + name + ".json")).string();
+  return scratch("score_") + name + ".json";
 }
 
 TEST(Score, EveryMetricHasAUnitAndOneNameAndAValueOrAReason) {

@@ -4,6 +4,7 @@
 #include "sensors/sensors.h"
 #include "tests/sensors/scenes.h"
 #include "tests/support/errors.h"
+#include "tests/support/scratch.h"
 #include "tests/support/shapes.h"
 
 #include <gmock/gmock.h>
@@ -83,7 +84,7 @@ TEST(Sensors, TheLogHoldsTheNominalRigAndTheTruthTheTrueOne) {
     EXPECT_EQ(r.log.rig.mounts[i].X_BS.matrix(), nominal.mounts[i].X_BS.matrix());
     EXPECT_NE(r.truth.rig.mounts[i].X_BS.matrix(), nominal.mounts[i].X_BS.matrix());
   }
-  const std::string file = ::testing::TempDir() + "adit_sensors_log.h5";
+  const std::string file = scratch("sensors_log.h5");
   save_log(file, r.log);
   const H5Reader in(file);
   EXPECT_THAT(in.names("/"), ElementsAre("rig", "scans"));
@@ -193,7 +194,7 @@ TEST(Sensors, LoggedStampsErrAboutTheTrueOnesWithinTheJitter) {
 
 TEST(Sensors, ARecordingComesBackFromItsFilesBitForBit) {
   const Recording r = record(ring_world(20, 4, 2, 1), round_the_ring(5), load_rig("cart4", 38400), {}, {}, 4);
-  const std::string file = ::testing::TempDir() + "adit_sensors_back.h5";
+  const std::string file = scratch("sensors_back.h5");
   save_log(file, r.log);
   const Log back = load_log(file);
   for (size_t i = 0; i < 4; ++i) {

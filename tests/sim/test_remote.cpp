@@ -4,6 +4,7 @@
 #include "sim/remote.h"
 #include "sim/sim.h"
 #include "tests/sim/terrain.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,7 +20,7 @@ using testing::HasSubstr;
 // A file that lives as long as this does.
 struct TextFile {
   explicit TextFile(const std::string& text)
-      : name(testing::TempDir() + "adit_commands_" + std::to_string(std::hash<std::string>{}(text)) + ".csv") {
+      : name(scratch("commands_") + std::to_string(std::hash<std::string>{}(text)) + ".csv") {
     write_text(name, text);
   }
   ~TextFile() { std::filesystem::remove(name); }

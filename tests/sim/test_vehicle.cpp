@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "sim/vehicle.h"
+#include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,8 +22,7 @@ std::string error_of_changed(const std::string& from, const std::string& to, con
   const size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
-  const std::string file =
-      testing::TempDir() + "adit_vehicle_" + std::to_string(std::hash<std::string>{}(to)) + ".toml";
+  const std::string file = scratch("vehicle_") + std::to_string(std::hash<std::string>{}(to)) + ".toml";
   write_text(file, text);
   std::string what;
   try {

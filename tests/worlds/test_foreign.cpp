@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes and plans in programs that are not ours: each test runs where the program is installed.
 #include "base/files.h"
+#include "tests/support/scratch.h"
 #include "worlds/worlds.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +40,7 @@ double area_of(const Mesh& mesh) {
 
 // A small mine with a wall in it, saved once.
 struct Saved {
-  std::string dir = ::testing::TempDir() + "adit_foreign";
+  std::string dir = scratch("foreign");
   World world;
   double area_m2;
 

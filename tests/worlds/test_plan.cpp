@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
 #include "base/files.h"
+#include "tests/support/scratch.h"
 #include "worlds/plan.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +40,7 @@ std::string error_of(const WorldSettings& s) {
 
 WorldSettings with_plan(const std::string& name, const std::string& text) {
   WorldSettings s;
-  s.plan = ::testing::TempDir() + "adit_plan_" + name + ".json";
+  s.plan = scratch("plan_") + name + ".json";
   write_text(s.plan, text);
   return s;
 }

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/grid.h"
+#include "tests/support/scratch.h"
 #include "worlds/polygons.h"
 #include "worlds/worlds.h"
 
@@ -13,7 +14,7 @@ namespace adit {
 namespace {
 
 std::string file_with(const std::string& name, const std::string& text) {
-  const std::string file = ::testing::TempDir() + "adit_" + name + ".geojson";
+  const std::string file = scratch(name + ".geojson");
   write_text(file, text);
   return file;
 }
@@ -63,7 +64,7 @@ TEST(Polygons, ThePlanThatIsWrittenIsTheMineThatIsReadAgain) {
   s.kind = "panel";
   s.mesh_edge_m = 0.4;
   const World first = make_world(s, 8);
-  const std::string dir = ::testing::TempDir() + "adit_plan_again";
+  const std::string dir = scratch("plan_again");
   save_plan(dir, first);
   s.kind = "plan";
   s.plan = dir + "/plan.geojson";
@@ -84,7 +85,7 @@ TEST(Polygons, TheGridOfThePlanHasTheVoidsAreaFree) {
   s.kind = "panel";
   s.mesh_edge_m = 0.5;
   const World world = make_world(s, 3);
-  const std::string dir = ::testing::TempDir() + "adit_plan_grid";
+  const std::string dir = scratch("plan_grid");
   save_plan(dir, world);
   const Grid grid = read_grid(dir + "/plan.yaml");
   double free = 0, rim = 0;

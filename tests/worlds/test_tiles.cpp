@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/world_writer.h"
+#include "tests/support/scratch.h"
 #include "tests/support/shapes.h"
 #include "worlds/worlds.h"
 
@@ -119,8 +120,7 @@ TEST(Tiles, TwoPartsThatRunIntoEachOtherAreFoundAsInTheWhole) {
 }
 
 TEST(Tiles, FilesWrittenPartByPartAreThoseOfTheWhole) {
-  const std::string whole = ::testing::TempDir() + "adit_tiles_whole",
-                    tiled = ::testing::TempDir() + "adit_tiles_parts";
+  const std::string whole = scratch("tiles_whole"), tiled = scratch("tiles_parts");
   save_world(whole, make_world(panel(50), 3));
   {
     WorldWriter writer(tiled);
