@@ -9,8 +9,8 @@
 
 namespace adit {
 
-/// How a drive ended: finished; its wheels do not get on; something stands in its way; over on its side or head; no floor under it.
-enum class DriveEnd { finished, stuck, tipped, fell, blocked };
+/// How a drive ended: finished; its wheels do not get on; something stands in its way; over on its side or head; no floor under it; or it has not, being a stretch of a drive that goes on, or was killed.
+enum class DriveEnd { finished, stuck, tipped, fell, blocked, underway };
 std::string drive_end_name(DriveEnd end);
 
 /// What a vehicle truly did.
@@ -23,5 +23,8 @@ struct Drive {
   std::vector<int> ground =
       {};  // (passages) what lies on the floor: 0 nothing, 1 track, 2 rubble; empty: nothing anywhere
 };
+
+/// What comes later of a drive, put behind what came before it.
+void append(Drive& drive, const Drive& later);
 
 }  // namespace adit

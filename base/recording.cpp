@@ -27,8 +27,7 @@ void append(Log& log, const Log& later) {
 
 void append(Truth& truth, const Truth& later) {
   ADIT_CHECK(truth.scans.size() == later.scans.size());
-  put_behind(truth.drive.path.stamp_s, later.drive.path.stamp_s);
-  put_behind(truth.drive.path.X_WB, later.drive.path.X_WB);
+  append(truth.drive, later.drive);
   for (size_t i = 0; i < truth.scans.size(); ++i) {
     ScanTruth& to = truth.scans[i];
     const ScanTruth& from = later.scans[i];

@@ -82,7 +82,7 @@ struct Truth {
   std::vector<ScanTruth> scans;
 };
 
-/// What comes later in a recording, put behind what came before it; rigs and all but scans and path stay as they are.
+/// What comes later in a recording, put behind what came before it; rigs stay as they are.
 void append(Log& log, const Log& later);
 void append(Truth& truth, const Truth& later);
 

@@ -36,8 +36,8 @@ Drive load_drive(const H5Reader& in) {
   drive.path.stamp_s = in.array<double>("/path/stamp_s", rows);
   drive.path.X_WB = poses_of(in.array<double>("/path/X_WB", {rows[0], 3, 4}));
   const std::int64_t end = in.integer("/path", "end");
-  if (end < 0 || end > static_cast<std::int64_t>(DriveEnd::blocked))
-    throw Error(in.file() + ": attribute 'end' at /path must be one of 0 to 4");
+  if (end < 0 || end > static_cast<std::int64_t>(DriveEnd::underway))
+    throw Error(in.file() + ": attribute 'end' at /path must be one of 0 to 5");
   drive.end = static_cast<DriveEnd>(end);
   drive.cause = in.text("/path", "cause");
   drive.driven_m = in.number("/path", "driven_m");
@@ -154,7 +154,8 @@ void save_truth(const std::string& file, const Truth& truth, Packing packing) {
 void join_truths(const std::string& file, const std::vector<std::string>& pieces) {
   Pieces from(pieces);
   ADIT_CHECK(from.size() > 0);
-  const Truth head = load_head(from.at(0));
+  Truth head = load_head(from.at(0));
+  head.drive = load_drive(from.at(from.size() - 1));  // how it ended
   write_file(
       file, head, Packing::small,
       [&](H5Writer& out) {

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/parts.h"
+#include "base/relay.h"
 #include "base/world_writer.h"
 #include "eval/mine_views.h"
 #include "eval/trouble.h"
@@ -127,20 +128,16 @@ void Stages::pictures(const World& world) {
 Stages::Driven Stages::drive(const Scenario& s, const World& world, Recording* keep) {
   Driven driven{};
   timed("drive", [&] {
-    const auto seed = static_cast<std::uint64_t>(s.seed);
     const Vehicle vehicle = load_vehicle(s.vehicle);
     const Rig rig = load_rig(s.sensors);
-    const Route route = plan_route(world, s.route, seed);
-    driven.drive = adit::drive(world, route, vehicle, s.drive, seed, console_.progress());
+    driven.drive = stream(s, world, rig, vehicle, keep);
     driven.exit_code = driven.drive.end == DriveEnd::finished ? 0 : 1;
-    write_text(out_ + "/scenario.toml", resolved_toml(s));
-    stream(s, world, driven.drive, rig, vehicle, keep);
     forget({"recording/trouble.png", "map", "external", "score.json", "report"});
     if (driven.exit_code != 0)
       write_png(out_ + "/recording/trouble.png", trouble_picture(world, driven.drive, vehicle.hull));
   });
   const Drive& d = driven.drive;
-  const double minutes = d.path.empty() ? 0 : (d.path.stamp_s.back() - d.path.stamp_s.front()) / 60;
+  const double minutes = d.path.empty() ? 0 : d.path.stamp_s.back() / 60;
   console_.note("  drove " + with_unit(d.driven_m, "m", 0) + " of " + with_unit(d.route.length_m, "m", 0) + " in " +
                 with_unit(minutes, "min", 1));
   if (driven.exit_code != 0)
@@ -149,31 +146,38 @@ Stages::Driven Stages::drive(const Scenario& s, const World& world, Recording* k
   return driven;
 }
 
-// What the lasers see, to OUT/recording/parts, and from there to log.h5 and truth.h5.
-void Stages::stream(const Scenario& s, const World& world, const Drive& drive, const Rig& rig, const Vehicle& vehicle,
-                    Recording* keep) {
+// The vehicle drives on a thread of its own while what its lasers saw is told to OUT/recording/parts, and from there to
+// log.h5 and truth.h5.
+Drive Stages::stream(const Scenario& s, const World& world, const Rig& rig, const Vehicle& vehicle, Recording* keep) {
   constexpr double part_s = 60;
+  const auto seed = static_cast<std::uint64_t>(s.seed);
+  const Route route = plan_route(world, s.route, seed);
   const std::string dir = out_ + "/recording/parts";
   remove_parts(dir);  // of a drive that was killed
   std::vector<std::string> logs, truths;
-  const auto take = [&](Recording&& piece) {
+  Recorder recorder(world, rig, vehicle.hull, s.sensors, seed, part_s, [&](Recording&& piece) {
     const size_t n = logs.size();
     save_part(dir, n, piece.log, piece.truth);
     logs.push_back(part_log(dir, n));
     truths.push_back(part_truth(dir, n));
     if (!keep) return;
-    if (n == 0) {
+    if (n == 0)
       *keep = std::move(piece);
-    } else {
-      append(keep->log, piece.log);
-      append(keep->truth, piece.truth);
-    }
-  };
-  record(world, drive, rig, vehicle.hull, s.sensors, static_cast<std::uint64_t>(s.seed), part_s, take,
-         console_.progress());
+    else
+      append(*keep, piece);
+  });
+  Drive driven;
+  relay<Drive>(
+      12,
+      [&](const std::function<void(Drive &&)>& give) {
+        driven = adit::drive(world, route, vehicle, s.drive, seed, give, console_.progress());
+      },
+      [&](Drive&& stretch) { recorder.add(stretch); });
+  write_text(out_ + "/scenario.toml", resolved_toml(s));
   join_truths(out_ + "/recording/truth.h5", truths);
   join_logs(out_ + "/recording/log.h5", logs);
   remove_parts(dir);
+  return driven;
 }
 
 std::optional<Estimate> Stages::map(const Scenario& s, const Log& log) {

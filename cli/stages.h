@@ -27,7 +27,7 @@ class Stages {
   /// OUT/world/plan.png, interior-1.png, interior-2.png
   void pictures(const World& world);
   struct Driven {
-    Drive drive;
+    Drive drive;    // of its path the last minute or two
     int exit_code;  // 1 where the drive ended early
   };
   /// OUT/recording, streamed: a part a minute, joined at the end.
@@ -55,8 +55,7 @@ class Stages {
   Console& console_;
   std::vector<Timed> times_;
 
-  void stream(const Scenario& s, const World& world, const Drive& drive, const Rig& rig, const Vehicle& vehicle,
-              Recording* keep);
+  Drive stream(const Scenario& s, const World& world, const Rig& rig, const Vehicle& vehicle, Recording* keep);
   void timed(const std::string& stage, const std::function<void()>& work);
   void forget(const std::vector<std::string>& later) const;
 };

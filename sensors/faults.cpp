@@ -93,20 +93,16 @@ std::vector<FaultPlan> faults_of(const std::vector<FaultPlan>& all, const std::s
   return own;
 }
 
-std::vector<double> surviving(const std::vector<double>& times, const std::vector<FaultPlan>& faults, double begin_s,
-                              size_t mount, std::uint64_t seed) {
-  std::vector<double> left;
-  for (size_t n = 0; n < times.size(); ++n) {
-    bool lost = false;
-    for (size_t i = 0; i < faults.size(); ++i) {
-      const FaultPlan& f = faults[i];
-      if (!f.covers(times[n] - begin_s)) continue;
-      lost = lost || f.kind == Kind::dies ||
-             (f.kind == Kind::loses && uniform(seed, Draw::fault_loss, scan_address(mount, n), i) < f.share);
-    }
-    if (!lost) left.push_back(times[n]);
+bool survives(double time_s, size_t number, const std::vector<FaultPlan>& faults, double begin_s, size_t mount,
+              std::uint64_t seed) {
+  for (size_t i = 0; i < faults.size(); ++i) {
+    const FaultPlan& f = faults[i];
+    if (!f.covers(time_s - begin_s)) continue;
+    if (f.kind == Kind::dies) return false;
+    if (f.kind == Kind::loses && uniform(seed, Draw::fault_loss, scan_address(mount, number), i) < f.share)
+      return false;
   }
-  return left;
+  return true;
 }
 
 double clock_error_s(double time_s, const std::vector<FaultPlan>& faults, double begin_s) {

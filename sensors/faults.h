@@ -39,9 +39,10 @@ std::vector<FaultPlan> parse_faults(const std::vector<std::string>& faults, cons
 /// Those of one laser.
 std::vector<FaultPlan> faults_of(const std::vector<FaultPlan>& all, const std::string& laser);
 
-/// The scans that reach the log: without those of a dead laser and those that are lost.
-std::vector<double> surviving(const std::vector<double>& times, const std::vector<FaultPlan>& faults, double begin_s,
-                              size_t mount, std::uint64_t seed);
+/// Whether a scan reaches the log: not those of a dead laser and those that are lost.
+/// @param number  of the beat that it begins on
+bool survives(double time_s, size_t number, const std::vector<FaultPlan>& faults, double begin_s, size_t mount,
+              std::uint64_t seed);
 /// How much later than the truth a scan is stamped.
 double clock_error_s(double time_s, const std::vector<FaultPlan>& faults, double begin_s);
 /// The mount at a time.

@@ -14,21 +14,24 @@
 
 namespace adit {
 
-std::vector<double> scan_times(const Mount& mount, size_t index, double begin_s, double end_s,
-                               const SensorSettings& settings, std::uint64_t seed) {
-  const LaserModel& laser = mount.laser;
-  double last_beam_s = 0;
-  for (int k = 0; k < laser.beams; ++k) last_beam_s = std::max(last_beam_s, laser.beam_offset_s(k));
-  std::vector<double> times;
-  size_t lost = 0;
-  for (size_t n = 0;; ++n) {
-    // The link loses whole scans of the mirror, which itself keeps its beat.
-    if (n > 0 && uniform(seed, Draw::laser_jitter, scan_address(index, n), 1) < settings.late) ++lost;
-    const double t = begin_s + mount.phase_s + static_cast<double>(n) * laser.interval_s +
-                     static_cast<double>(lost * static_cast<size_t>(laser.interlace)) * laser.turn_s;
-    if (t + last_beam_s > end_s) return times;
-    times.push_back(t);
-  }
+Beat::Beat(const Mount& mount, size_t index, double begin_s, const SensorSettings& settings, std::uint64_t seed)
+    : from_s_(begin_s + mount.phase_s),
+      interval_s_(mount.laser.interval_s),
+      mirror_scan_s_(static_cast<double>(mount.laser.interlace) * mount.laser.turn_s),
+      late_(settings.late),
+      index_(index),
+      seed_(seed) {
+  for (int k = 0; k < mount.laser.beams; ++k) scan_s_ = std::max(scan_s_, mount.laser.beam_offset_s(k));
+}
+
+double Beat::time_s() const {
+  return from_s_ + static_cast<double>(number_) * interval_s_ + static_cast<double>(lost_) * mirror_scan_s_;
+}
+
+// The link loses whole scans of the mirror, which itself keeps its beat.
+void Beat::next() {
+  ++number_;
+  if (uniform(seed_, Draw::laser_jitter, scan_address(index_, number_), 1) < late_) ++lost_;
 }
 
 // What a few scans need on their way. Columns are (scans x beams).
@@ -46,13 +49,14 @@ struct Sweep::Shot {
 };
 
 Sweep::Sweep(const Caster& caster, const Trajectory& path, const Mount& mount, size_t index, const Hull& hull,
-             const SensorSettings& settings, std::uint64_t seed)
+             const SensorSettings& settings, double begin_s, std::uint64_t seed)
     : caster_(&caster),
       path_(&path),
       mount_(&mount),
       hull_(&hull),
       index_(index),
       settings_(&settings),
+      begin_s_(begin_s),
       seed_(seed),
       draws_(seed, Draw::beam_chance),
       device_(make_device(mount.laser, index, settings, seed)),
@@ -189,7 +193,7 @@ bool Sweep::mirror(const MountFan& fan, size_t beam, size_t at, const Meeting& a
 void Sweep::tell(const MountFan& fan, size_t at, std::uint64_t scan, size_t row, Shot& shot, Scans& scans,
                  ScanTruth& truth) const {
   const size_t beams = fan.along.size(), rays = bundle_.place.size();
-  const double on_s = settings_->on_s + truth.stamp_s[row] - path_->stamp_s.front();
+  const double on_s = settings_->on_s + truth.stamp_s[row] - begin_s_;
   const std::vector<int>& passage = caster_->mesh().passage;
   arcs(shot.hit.cosine.data() + at, shot.incidence_rad.data(), beams);
   for (size_t k = 0; k < beams; ++k) {

@@ -19,16 +19,29 @@
 namespace adit {
 
 /// When the scans of a mount truly begin: from begin_s + phase, an interval apart, later by whole mirror scans where
-/// the link loses some. The last one ends before end_s.
-std::vector<double> scan_times(const Mount& mount, size_t index, double begin_s, double end_s,
-                               const SensorSettings& settings, std::uint64_t seed);
+/// the link loses some.
+class Beat {
+ public:
+  Beat(const Mount& mount, size_t index, double begin_s, const SensorSettings& settings, std::uint64_t seed);
+
+  size_t number() const { return number_; }
+  double time_s() const;
+  /// From a scan's begin to its last beam.
+  double scan_s() const { return scan_s_; }
+  void next();
+
+ private:
+  double from_s_, interval_s_, mirror_scan_s_, late_, scan_s_ = 0;
+  size_t index_, number_ = 0, lost_ = 0;
+  std::uint64_t seed_;
+};
 
 /// One laser on its way through a mine: fires whole scans into the arrays of a recording.
 class Sweep {
  public:
-  /// The mount is the true one; everything given must outlive this.
+  /// The mount is the true one, switched on at begin_s; everything given must outlive this.
   Sweep(const Caster& caster, const Trajectory& path, const Mount& mount, size_t index, const Hull& hull,
-        const SensorSettings& settings, std::uint64_t seed);
+        const SensorSettings& settings, double begin_s, std::uint64_t seed);
 
   /// Fires scans that start at truth.stamp_s[begin] to truth.stamp_s[end - 1] into those rows of arrays that are large
   /// enough already. Row 0 is scan `first` of the laser's drive. Safe to call from many threads for different rows.
@@ -53,6 +66,7 @@ class Sweep {
   const Hull* hull_;
   size_t index_;
   const SensorSettings* settings_;
+  double begin_s_;
   std::uint64_t seed_;
   Draws draws_;
   Device device_;

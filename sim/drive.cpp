@@ -19,8 +19,10 @@ namespace adit {
 namespace {
 
 constexpr double lookahead_m = 0.9;
-constexpr double settle_s = 5;  // longest time to come to rest before the drive
-constexpr double still = 5e-3;  // m/s and rad/s
+constexpr size_t stretch_s = 10;  // of a drive that is given away at once
+constexpr double kept_s = 60;     // of the path at least, for what a trouble's picture shows
+constexpr double settle_s = 5;    // longest time to come to rest before the drive
+constexpr double still = 5e-3;    // m/s and rad/s
 constexpr double still_for_s = 0.2;
 constexpr double line_m = 0.25;                  // between points of the line that was driven
 constexpr double shift_m = 0.01, shift_s = 1.5;  // so near to where forward and backward change it stops, and so long
@@ -81,33 +83,44 @@ class Run {
     if (by_route()) check_line(world, floor_, route);
     physics_.emplace(world.mesh, vehicle, start_, step_s_, relief_ ? &*relief_ : nullptr);
     drive_.route = route;
+    drive_.end = DriveEnd::underway;
     settle();
   }
 
-  Drive finish(const Progress& progress) {
-    reserve();
+  Drive finish(const std::function<void(Drive&&)>& take, const Progress& progress) {
     for (std::int64_t k = 0;; ++k) {
       const double t_s = static_cast<double>(k) * step_s_;
       if (k % (settings_.step_hz / settings_.sample_hz) == 0) record(t_s);
       if (k % settings_.step_hz == 0) progress("drive", drive_.driven_m, follower_.length_m());
       if (std::visit([&](const auto& driver) { return driver.done(t_s); }, driver_) || went_wrong(t_s)) break;
       step(t_s);
+      if (drive_.path.size() - given_ == stretch_s * static_cast<size_t>(settings_.sample_hz)) give(take);
     }
+    if (drive_.end == DriveEnd::underway) drive_.end = DriveEnd::finished;
     if (!by_route()) keep_line();
     progress("drive", drive_.driven_m, drive_.route.length_m);
+    give(take);
     return std::move(drive_);
   }
 
  private:
-  // Room for twice the time that the route should take, so that a long path is not moved while it grows; what is not
-  // filled takes no memory.
-  void reserve() {
-    const bool pushed = vehicle_.drivetrain == Drivetrain::pushed;
-    const double speed =
-        pushed ? settings_.speed_mps : std::min(settings_.robot_speed_mps, vehicle_.motors.speed_max_mps);
-    const auto poses = static_cast<size_t>(2 * follower_.length_m() / speed * settings_.sample_hz);
-    drive_.path.stamp_s.reserve(poses);
-    drive_.path.X_WB.reserve(poses);
+  // What was driven since the last time; of what came before the last `keep` poses stay.
+  void give(const std::function<void(Drive&&)>& take) {
+    Trajectory& path = drive_.path;
+    const auto from = static_cast<std::ptrdiff_t>(given_);
+    take({drive_.route,
+          {{path.stamp_s.begin() + from, path.stamp_s.end()}, {path.X_WB.begin() + from, path.X_WB.end()}},
+          drive_.end,
+          drive_.cause,
+          drive_.driven_m,
+          drive_.ground});
+    const auto keep = static_cast<size_t>(kept_s * settings_.sample_hz);
+    if (path.size() > 2 * keep) {
+      const auto gone = static_cast<std::ptrdiff_t>(path.size() - keep);
+      path.stamp_s.erase(path.stamp_s.begin(), path.stamp_s.begin() + gone);
+      path.X_WB.erase(path.X_WB.begin(), path.X_WB.begin() + gone);
+    }
+    given_ = path.size();
   }
 
   bool by_route() const { return settings_.commands.empty(); }
@@ -255,6 +268,7 @@ class Run {
   std::optional<double> shift_at_s_;  // when it goes on, the other way round
   std::vector<Vec2> line_;            // driven by commands
   bool resting_ = false;
+  size_t given_ = 0;  // poses of the path that were given away
 };
 
 }  // namespace
@@ -288,11 +302,19 @@ Fields fields(DriveSettings& s) {
 }
 
 Drive drive(const World& world, const Route& route, const Vehicle& vehicle, const DriveSettings& settings,
-            std::uint64_t seed, const Progress& progress) {
+            std::uint64_t seed, const std::function<void(Drive&&)>& take, const Progress& progress) {
   check(settings);
   check_width(world, route, vehicle);
   if (world.mesh.face.empty()) throw Error("world " + world.name + ": its mesh has no faces");
-  return Run(world, route, vehicle, settings, seed).finish(progress);
+  return Run(world, route, vehicle, settings, seed).finish(take, progress);
+}
+
+Drive drive(const World& world, const Route& route, const Vehicle& vehicle, const DriveSettings& settings,
+            std::uint64_t seed, const Progress& progress) {
+  Drive whole;
+  drive(
+      world, route, vehicle, settings, seed, [&](Drive&& stretch) { append(whole, stretch); }, progress);
+  return whole;
 }
 
 }  // namespace adit

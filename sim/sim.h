@@ -8,6 +8,7 @@
 #include "sim/vehicle.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 namespace adit {
@@ -49,5 +50,12 @@ Fields fields(DriveSettings& settings);
 /// scan).
 Drive drive(const World& world, const Route& route, const Vehicle& vehicle, const DriveSettings& settings,
             std::uint64_t seed, const Progress& progress = {});
+
+/// The same without the whole path in memory.
+/// @param take  is given each stretch of the drive as soon as it is driven; put one behind the other they are the drive;
+///              all but the last are `underway`
+/// @return      the drive with the last minute or two of its path
+Drive drive(const World& world, const Route& route, const Vehicle& vehicle, const DriveSettings& settings,
+            std::uint64_t seed, const std::function<void(Drive&&)>& take, const Progress& progress = {});
 
 }  // namespace adit

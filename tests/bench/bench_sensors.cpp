@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/parallel.h"
-#include "base/parts.h"
+#include "cli/console.h"
 #include "cli/scenario.h"
+#include "cli/stages.h"
 #include "sensors/sweep.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/raw_rays.h"
@@ -47,9 +48,11 @@ struct Timed {
 
 // One laser on one thread, and Embree alone on the rays that it fires.
 Timed time_laser(const SensorSettings& settings, const Mount& mount, const Caster& caster, const Drive& drive) {
-  const Sweep sweep(caster, drive.path, mount, 0, {}, settings, 1);
+  const Hull nothing;
+  const Sweep sweep(caster, drive.path, mount, 0, nothing, settings, 0, 1);
   ScanTruth truth;
-  truth.stamp_s = scan_times(mount, 0, 0, drive.path.stamp_s.back(), settings, 1);
+  for (Beat beat(mount, 0, 0, settings, 1); beat.time_s() + beat.scan_s() <= drive.path.stamp_s.back(); beat.next())
+    truth.stamp_s.push_back(beat.time_s());
   const size_t scans = truth.stamp_s.size(), beams = static_cast<size_t>(mount.laser.beams), n = scans * beams;
   Scans log;
   log.beams = mount.laser.beams;
@@ -107,21 +110,11 @@ std::vector<Figure> drive_stage(const std::string& name, int baud, int sub_rays)
   s.sensors.baud = baud;
   s.sensors.sub_rays = sub_rays;
   const World world = make_world(s.world, 1);
-  const Vehicle vehicle = load_vehicle(s.vehicle);
   const std::string dir = (std::filesystem::temp_directory_path() / ("adit_bench_" + name)).string();
+  Console console(true, false);
+  Stages stages(dir, console);
   double driven_s = 0;
-  const double wall_s = best_seconds(1, [&] {
-    const Drive path = drive(world, plan_route(world, s.route, 1), vehicle, s.drive, 1);
-    driven_s = path.path.stamp_s.back() - path.path.stamp_s.front();
-    std::vector<std::string> logs, truths;
-    record(world, path, load_rig(s.sensors), vehicle.hull, s.sensors, 1, 60, [&](Recording&& piece) {
-      save_part(dir, logs.size(), piece.log, piece.truth);
-      truths.push_back(part_truth(dir, logs.size()));
-      logs.push_back(part_log(dir, logs.size()));
-    });
-    join_truths(dir + "/truth.h5", truths);
-    join_logs(dir + "/log.h5", logs);
-  });
+  const double wall_s = best_seconds(1, [&] { driven_s = stages.drive(s, world, nullptr).drive.path.stamp_s.back(); });
   std::filesystem::remove_all(dir);
   return {{name, driven_s / wall_s, "ratio", "higher",
            "bruceton with cart4 at " + std::to_string(baud) + " Bd, " + std::to_string(sub_rays) +
@@ -139,7 +132,7 @@ std::vector<Figure> two_threads() {
   for (int turn = 0; turn < 3; ++turn) {
     const auto seconds = [&](int threads) {
       set_threads(threads);
-      return best_seconds(1, [&] { record(mine(), drive, rig, {}, settings, 1, 60, [](Recording&&) {}); });
+      return best_seconds(1, [&] { record(mine(), drive, rig, {}, settings, 1); });
     };
     const double one = seconds(1), two = seconds(2);
     if (turn == 0 || one < one_s) one_s = one;

@@ -93,27 +93,43 @@ TEST(Sensors, TheLogHoldsTheNominalRigAndTheTruthTheTrueOne) {
   EXPECT_THAT(in.names("/rig/up"), ElementsAre("X_BS"));
 }
 
+// A drive as it comes while it is driven, so many poses at a time.
+std::vector<Drive> in_stretches(const Drive& drive, size_t poses) {
+  std::vector<Drive> stretches;
+  for (size_t from = 0; from < drive.path.size(); from += poses) {
+    const size_t to = std::min(from + poses, drive.path.size());
+    stretches.push_back(drive);
+    Drive& stretch = stretches.back();
+    stretch.path.stamp_s = {drive.path.stamp_s.begin() + from, drive.path.stamp_s.begin() + to};
+    stretch.path.X_WB = {drive.path.X_WB.begin() + from, drive.path.X_WB.begin() + to};
+    if (to < drive.path.size()) stretch.end = DriveEnd::underway;
+  }
+  return stretches;
+}
+
 TEST(Sensors, PiecesPutTogetherAreTheWholeAlsoAcrossAFault) {
   const World world = ring_world(20, 4, 2, 1);
   Drive drive = round_the_ring(20);
   drive.ground = {1, 0, 2};
+  drive.end = DriveEnd::stuck;
   SensorSettings s;
   s.faults = {"front freezes from_s=5 to_s=13", "up slips from_s=8 yaw_deg=1", "down loses from_s=1 share=0.5"};
   const Rig rig = load_rig("cart4", 38400);
   const Recording whole = record(world, drive, rig, {}, s, 11);
   Recording sum;
   size_t pieces = 0;
-  record(world, drive, rig, {}, s, 11, 3.7, [&](Recording&& piece) {
-    if (pieces++ == 0) {
+  const Hull nothing;
+  Recorder recorder(world, rig, nothing, s, 11, 3.7, [&](Recording&& piece) {
+    if (pieces++ == 0)
       sum = std::move(piece);
-    } else {
-      append(sum.log, piece.log);
-      append(sum.truth, piece.truth);
-    }
+    else
+      append(sum, piece);
   });
+  for (const Drive& stretch : in_stretches(drive, 131)) recorder.add(stretch);
   EXPECT_EQ(pieces, 6u);  // 20 s / 3.7 s
   EXPECT_EQ(sum.truth.drive.path.stamp_s, drive.path.stamp_s);
   EXPECT_EQ(sum.truth.drive.ground, drive.ground);
+  EXPECT_EQ(sum.truth.drive.end, DriveEnd::stuck);
   for (size_t i = 0; i < 4; ++i) {
     EXPECT_TRUE(same_bits(sum.log.scans[i].stamp_s, whole.log.scans[i].stamp_s));
     EXPECT_TRUE(same_bits(sum.log.scans[i].range_m, whole.log.scans[i].range_m));

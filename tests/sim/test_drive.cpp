@@ -185,6 +185,30 @@ TEST(Drive, SameSeedGivesTheSameBitsAndAnotherSeedDoesNot) {
   EXPECT_NE(a.path.X_WB.back().matrix(), c.path.X_WB.back().matrix());
 }
 
+TEST(Drive, ItsStretchesAreTheWholeAndWhatStaysOfALongPathIsItsEnd) {
+  const World world = plain(level);
+  const Route route = route_through({{0, 0}, {30, 0}}, 1.5);
+  DriveSettings slow = brisk();
+  slow.stop_min_s = slow.stop_max_s = 60;
+  const Drive whole = drive(world, route, load_vehicle("cart"), slow, 10);
+  Drive sum;
+  size_t stretches = 0, underway = 0;
+  const Drive left = drive(world, route, load_vehicle("cart"), slow, 10, [&](Drive&& stretch) {
+    ++stretches;
+    underway += stretch.end == DriveEnd::underway;
+    append(sum, stretch);
+  });
+  EXPECT_GT(stretches, 12u);
+  EXPECT_EQ(underway, stretches - 1);
+  EXPECT_EQ(sum.end, DriveEnd::finished);
+  EXPECT_EQ(sum.driven_m, whole.driven_m);
+  EXPECT_EQ(sum.path.stamp_s, whole.path.stamp_s);
+  for (size_t i = 0; i < whole.path.size(); ++i) ASSERT_EQ(sum.path.X_WB[i].matrix(), whole.path.X_WB[i].matrix());
+  EXPECT_LT(left.path.size(), whole.path.size());
+  EXPECT_GE(left.path.stamp_s.back() - left.path.stamp_s.front(), 59);
+  EXPECT_EQ(left.path.stamp_s.back(), whole.path.stamp_s.back());
+}
+
 TEST(Drive, DrivesAtTheSameTimeOnSevenThreadsGiveTheBitsOfOneAlone) {
   const World world = plain([](const Vec2& p) { return 0.02 * std::sin(3 * p.x() + 2 * p.y()); });
   const Route route = route_through({{0, 0}, {6, 0}, {9, 3}}, 1.5);
