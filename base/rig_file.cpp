@@ -136,7 +136,7 @@ Rig load_rig(const H5Reader& in) {
 Pieces::Pieces(std::vector<std::string> files) : files_(std::move(files)), open_(files_.size()) {}
 
 const H5Reader& Pieces::at(size_t i) {
-  constexpr size_t most_open = 256;
+  constexpr size_t most_open = 24;  // some 2 MB each
   if (!open_[i]) {
     if (number_open_ == most_open) {
       for (std::unique_ptr<H5Reader>& reader : open_) reader.reset();
