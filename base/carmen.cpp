@@ -43,6 +43,14 @@ class Words {
       fail("has '" + std::string(w) + "' where a number is needed");
     return value;
   }
+  /// A range may be said not to be one.
+  float range() {
+    const std::string_view w = word();
+    if (w == "nan" || w == "-nan") return std::numeric_limits<float>::quiet_NaN();
+    if (w == "inf") return std::numeric_limits<float>::infinity();
+    --at_;
+    return static_cast<float>(number());
+  }
   size_t count(size_t most) {
     const double value = number();
     if (!(value >= 0 && value <= static_cast<double>(most)) || value != std::floor(value))
@@ -115,7 +123,7 @@ void add_scan(Lines& device, Words& words, const Raster& shape, std::vector<floa
 std::vector<float> read_ranges(Words& words, size_t n) {
   std::vector<float> ranges;
   ranges.reserve(n);
-  for (size_t k = 0; k < n; ++k) ranges.push_back(static_cast<float>(words.number()));
+  for (size_t k = 0; k < n; ++k) ranges.push_back(words.range());
   return ranges;
 }
 
@@ -203,7 +211,8 @@ CarmenLog read_carmen(const std::string& file) {
   const std::string text = read_text(file);
   CarmenLog out;
   Devices devices;
-  size_t number = 0;
+  size_t number = 0, left_out = 0;
+  std::string first_fault;
   for (size_t at = 0; at < text.size();) {
     const size_t end = std::min(text.find('\n', at), text.size());
     const std::string_view line(text.data() + at, end - at);
@@ -215,11 +224,14 @@ CarmenLog read_carmen(const std::string& file) {
     try {
       read_line(words, devices);
     } catch (const Error& e) {
-      const bool breaks_off = end == text.size();
-      if (!breaks_off) throw;
-      out.notes.push_back("the last line is left out: " + std::string(e.what()));
+      if (left_out++ == 0) first_fault = e.what();
     }
   }
+  if (left_out > devices.front.scans.size() + devices.rear.scans.size())
+    throw Error(first_fault + "; so are more lines than can be read");
+  if (left_out > 0)
+    out.notes.push_back(std::to_string(left_out) + (left_out == 1 ? " line is" : " lines are") +
+                        " left out, the first: " + first_fault);
   out.true_path = std::move(devices.true_path);
   out.log.rig.name = "CARMEN";
   for (const auto& [name, device] : {std::pair{"front", &devices.front}, {"rear", &devices.rear}}) {

@@ -17,15 +17,15 @@ struct CarmenLog {
   Log log;               // lasers "front" (FLASER, ROBOTLASER1) and "rear" (RLASER, ROBOTLASER2), where there are lines
   Trajectory odometry;   // of the robot, by the front laser's lines
   Trajectory true_path;  // TRUEPOS lines; empty without
-  std::vector<std::string> notes;  // what could not be read: a last line that breaks off
+  std::vector<std::string> notes;  // lines that could not be read, how many and which was the first
 };
 
 /// Reads laser lines of either style, TRUEPOS, and PARAM robot_front_laser_max; passes over other lines. Ranges at or
 /// beyond the laser's maximum are no echo. Old lines state no field of view: it is 180 deg, with 180 and 360 values
 /// (or any even number) the last beam is missing. The device is taken for an LMS 200. Stamps are those of the message
 /// (ipc_timestamp), by which published relations name their poses, not the logger's.
-/// A line that is cut or not of numbers, or a stamp that does not grow: Error with file and line; but a last line without
-/// an end, as a logger leaves it that is stopped, is left out with a note.
+/// A line that is cut or not of numbers, of another raster than the laser's first, or with a stamp that does not grow is
+/// left out, which a note tells with file and line; where that befalls most lines it is an Error.
 CarmenLog read_carmen(const std::string& file);
 
 /// Writes the horizontal laser while its mount is level; others have no place in the format. Poses of the laser lines

@@ -44,24 +44,27 @@ void append(Truth& truth, const Truth& later) {
   }
 }
 
+Scans chosen(const Scans& scans, const std::vector<size_t>& numbers) {
+  Scans some;
+  some.beams = scans.beams;
+  for (const size_t n : numbers) {
+    const auto from = static_cast<std::ptrdiff_t>(n) * scans.beams, to = from + scans.beams;
+    some.stamp_s.push_back(scans.stamp_s[n]);
+    some.range_m.insert(some.range_m.end(), scans.range_m.begin() + from, scans.range_m.begin() + to);
+    if (!scans.code.empty()) some.code.insert(some.code.end(), scans.code.begin() + from, scans.code.begin() + to);
+    if (!scans.tilt_rad.empty()) some.tilt_rad.push_back(scans.tilt_rad[n]);
+  }
+  return some;
+}
+
 Log level_scans(const Log& log) {
   Log level{log.rig, {}};
   for (const Scans& scans : log.scans) {
-    if (scans.tilt_rad.empty()) {
-      level.scans.push_back(scans);
-      continue;
-    }
-    Scans kept;
-    kept.beams = scans.beams;
-    for (size_t n = 0; n < scans.size(); ++n) {
-      if (scans.tilt_rad[n] != 0) continue;
-      const auto from = static_cast<std::ptrdiff_t>(n) * scans.beams, to = from + scans.beams;
-      kept.stamp_s.push_back(scans.stamp_s[n]);
-      kept.tilt_rad.push_back(0);
-      kept.range_m.insert(kept.range_m.end(), scans.range_m.begin() + from, scans.range_m.begin() + to);
-      if (!scans.code.empty()) kept.code.insert(kept.code.end(), scans.code.begin() + from, scans.code.begin() + to);
-    }
-    level.scans.push_back(std::move(kept));
+    std::vector<size_t> numbers;
+    for (size_t n = 0; n < scans.size(); ++n)
+      if (scans.tilt_rad.empty() || scans.tilt_rad[n] == 0) numbers.push_back(n);
+    level.scans.push_back(chosen(scans, numbers));
+    level.scans.back().tilt_rad.clear();
   }
   return level;
 }

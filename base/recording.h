@@ -86,6 +86,9 @@ struct Truth {
 void append(Log& log, const Log& later);
 void append(Truth& truth, const Truth& later);
 
+/// Some scans of a laser, by their rising numbers.
+Scans chosen(const Scans& scans, const std::vector<size_t>& numbers);
+
 /// The scans of a log whose mounts were not tilted: their lasers stand as the rig says.
 Log level_scans(const Log& log);
 

@@ -5,6 +5,8 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <utility>
 
 namespace adit {
@@ -50,6 +52,81 @@ void add_height(const Log& level, const Log& log, const MapSettings& settings, c
   if (!mapped.volume_m3) estimate.notes.push_back("the rig has no upward laser: no surface and no volume");
 }
 
+// What is said of scans that are left out.
+std::string share_of(size_t some, size_t all) {
+  return std::to_string(some) + " of " + std::to_string(all) + " scans";
+}
+
+/// The scans of a laser whose stamps grow.
+std::vector<size_t> in_order(const Scans& scans) {
+  std::vector<size_t> good;
+  for (size_t n = 0; n < scans.size(); ++n)
+    if (std::isfinite(scans.stamp_s[n]) && (good.empty() || scans.stamp_s[n] > scans.stamp_s[good.back()]))
+      good.push_back(n);
+  return good;
+}
+
+bool all_in_order(const Log& log) {
+  return std::all_of(log.scans.begin(), log.scans.end(),
+                     [](const Scans& scans) { return in_order(scans).size() == scans.size(); });
+}
+
+/// A log without the scans whose stamps do not grow; how many there were goes into the notes.
+Log put_in_order(const Log& log, std::vector<std::string>& notes) {
+  Log sound{log.rig, {}};
+  for (size_t i = 0; i < log.scans.size(); ++i) {
+    const std::vector<size_t> good = in_order(log.scans[i]);
+    sound.scans.push_back(chosen(log.scans[i], good));
+    if (const size_t all = log.scans[i].size(); good.size() < all)
+      notes.push_back("laser '" + log.rig.mounts[i].name + "': " + share_of(all - good.size(), all) +
+                      " are left out: their stamps do not grow");
+  }
+  return sound;
+}
+
+/// What was recorded within [from_s, to_s].
+Log between(const Log& log, double from_s, double to_s) {
+  Log part{log.rig, {}};
+  for (const Scans& all : log.scans) {
+    std::vector<size_t> within;
+    for (size_t n = 0; n < all.size(); ++n)
+      if (all.stamp_s[n] >= from_s && all.stamp_s[n] <= to_s) within.push_back(n);
+    part.scans.push_back(chosen(all, within));
+  }
+  return part;
+}
+
+struct Piece {
+  size_t begin, end;  // scans of the horizontal laser
+};
+
+Piece longest_piece(const std::vector<size_t>& breaks, size_t scans) {
+  Piece longest{0, 0};
+  size_t begin = 0;
+  for (size_t i = 0; i <= breaks.size(); ++i) {
+    const size_t end = i < breaks.size() ? breaks[i] : scans;
+    if (end - begin > longest.end - longest.begin) longest = {begin, end};
+    begin = end;
+  }
+  return longest;
+}
+
+/// Of a log that falls into pieces the longest, mapped; the notes tell what is left out.
+Estimate map_longest_piece(const Log& log, const std::vector<double>& stamp_s, const std::vector<size_t>& breaks,
+                           const MapSettings& settings, const Progress& progress) {
+  const Piece piece = longest_piece(breaks, stamp_s.size());
+  const double from_s = stamp_s[piece.begin], to_s = stamp_s[piece.end - 1];
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "the log falls into %zu pieces that nothing connects, the first gap at %.2f s; mapped is the longest, "
+                "%.2f s to %.2f s, %s",
+                breaks.size() + 1, stamp_s[breaks.front() - 1], from_s, to_s,
+                share_of(piece.end - piece.begin, stamp_s.size()).c_str());
+  Estimate estimate = make_map(between(log, from_s, to_s), settings, progress);
+  estimate.notes.insert(estimate.notes.begin(), text);
+  return estimate;
+}
+
 }  // namespace
 
 Fields fields(MapSettings& s) {
@@ -66,17 +143,25 @@ Fields fields(MapSettings& s) {
   return all;
 }
 
-Estimate make_map(const Log& all, const MapSettings& settings, const Progress& progress) {
+Estimate make_map(const Log& given, const MapSettings& settings, const Progress& progress) {
+  Estimate estimate;
+  const bool sound = all_in_order(given);
+  const Log ordered = sound ? Log{} : put_in_order(given, estimate.notes);
+  const Log& all = sound ? given : ordered;
   const Log level = nods(all) ? level_scans(all) : Log{};
   const Log& log = nods(all) ? level : all;
   const int h = horizontal_laser(log);
   const Scans& scans = log.scans[h];
   const Mount& mount = log.rig.mounts[h];
-  Estimate estimate;
   estimate.method = settings.method;
   estimate.path.stamp_s = scans.stamp_s;
 
   const Odometry odometry = estimate_motion(scans, mount, settings.odometry, progress);
+  if (!odometry.breaks.empty()) {
+    Estimate piece = map_longest_piece(all, scans.stamp_s, odometry.breaks, settings, progress);
+    piece.notes.insert(piece.notes.begin(), estimate.notes.begin(), estimate.notes.end());
+    return piece;
+  }
   estimate.open_loop = odometry.X_MB;
   estimate.degenerate = odometry.degenerate;
   if (odometry.lost > 0)

@@ -55,7 +55,7 @@ class Drift {
 struct Step {
   Pose2 X_MB;
   Mat3 information;
-  bool placed = false, degenerate = false;
+  bool placed = false, degenerate = false, breaks = false;
   double known_share = 0;
   Vec2 weak_direction = Vec2::UnitX();
   ScanPoints points;
@@ -88,6 +88,11 @@ class Tracker {
       match = place(out.points, match->X_AB, prior, X_before, dt_s);
     }
     if (!match) match = search(out.points, predicted, X_before, dt_s);
+    if (gap && !(match && match->known_share >= sure_share && !match->degenerate)) {
+      out.breaks = true;
+      begin_at(out);
+      return out;
+    }
     if (match) {
       out.X_MB = match->X_AB;
       out.placed = true;
@@ -103,7 +108,8 @@ class Tracker {
 
  private:
   static constexpr double max_gap_s = 1.5;
-  static constexpr int lost_for_good = 5;  // scans in a row; then the map begins anew where the prediction ended
+  static constexpr double sure_share = 0.7;  // of a scan's points on the map, to know where one is after a gap
+  static constexpr int lost_for_good = 5;    // scans in a row; then the map begins anew where the prediction ended
 
   static double scan_time(const BeamFan& fan) { return *std::max_element(fan.offset_s.begin(), fan.offset_s.end()); }
 
@@ -134,12 +140,7 @@ class Tracker {
 
   void keep(const Step& step) {
     lost_ = step.placed ? 0 : lost_ + 1;
-    if (lost_ >= lost_for_good && step.points.size() >= 30) {
-      keys_.clear();
-      add_key({step.points, step.X_MB});
-      lost_ = 0;
-      return;
-    }
+    if (lost_ >= lost_for_good && step.points.size() >= 30) return begin_at(step);
     if (!step.placed) return;
     const Pose2 off = keys_.back().X_MB.inverse() * step.X_MB;
     // What the map does not know must enter it, even if the cart seems to stand: where the way along a smooth passage
@@ -147,6 +148,13 @@ class Tracker {
     const bool moved = off.position().norm() >= s_.key_step_m || std::abs(off.yaw_rad) >= s_.key_step_deg * degree;
     if (!moved && step.known_share > 1 - s_.new_share) return;
     add_key({step.points, step.X_MB});
+  }
+
+  // The map begins anew with this scan.
+  void begin_at(const Step& step) {
+    keys_.clear();
+    add_key({step.points, step.X_MB});
+    lost_ = 0;
   }
 
   void add_key(KeyScan key) {
@@ -255,6 +263,7 @@ Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const Odom
     out.information[i] = settings.information_scale * step.information;
     weak[i] = {step.degenerate || !step.placed, step.weak_direction};
     out.lost += !step.placed;
+    if (step.breaks) out.breaks.push_back(i);
     if (i % 50 == 0 || i + 1 == n) progress("match scans", static_cast<double>(i + 1), static_cast<double>(n));
   }
   out.degenerate = stretches_of(scans.stamp_s, weak, settings);

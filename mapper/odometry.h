@@ -22,7 +22,8 @@ struct Odometry {
   std::vector<Eigen::Matrix3d>
       information;  // (n) of X_step, about frame B_i: of the error e in X_true = X_step * (ex, ey, eyaw)
   std::vector<DegenerateStretch> degenerate;
-  int lost = 0;  // scans that no match could place: their step is the prediction
+  int lost = 0;                // scans that no match could place: their step is the prediction
+  std::vector<size_t> breaks;  // rising; scans after a gap that nothing connects to those before it
 };
 
 struct OdometrySettings {
@@ -45,6 +46,8 @@ Fields fields(OdometrySettings& s);
 /// Motion of the body from one horizontal laser's scans alone: each scan is matched to a map of recent key scans from a
 /// prediction of constant speed, with a correlative search where that fails. Where the ribs leave a direction open the
 /// prediction is kept in it and the stretch is reported with the sigma to which it has grown.
+/// After a gap of more than 1.5 s a scan must lie on the map for the most part, else the motion breaks off there and begins
+/// anew, at the pose before it.
 /// @param scans at least one, stamps that grow, else Error; a scan without a single rib point moves as predicted and
 /// counts as lost
 Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings,

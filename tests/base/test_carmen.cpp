@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/rng.h"
+#include "tests/support/errors.h"
 #include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
@@ -13,6 +14,7 @@
 namespace adit {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 Log a_log(const LaserModel& laser) {
@@ -111,32 +113,43 @@ TEST(Carmen, LinesOfRealLogsAreRead) {
   }
 }
 
-TEST(Carmen, BadLinesAreNamedByFileAndLine) {
-  const auto error_of = [](const std::string& text) -> std::string {
-    write_text(scratch("bad.log"), text);
-    try {
-      read_carmen(scratch("bad.log"));
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "no error";
-  };
-  const std::string good = "FLASER 2 1 2 0 0 0 0 0 0 1 h 1\n";
-  EXPECT_THAT(error_of("# nothing\n"), HasSubstr("bad.log: has no FLASER"));
-  EXPECT_THAT(error_of(good + "FLASER 2 1 2 0 0 0\n"), HasSubstr("bad.log:2: this line is cut short"));
-  EXPECT_THAT(error_of(good + "FLASER 2 1 x 0 0 0 0 0 0 1 h 2\n"), HasSubstr("has 'x' where a number"));
-  EXPECT_THAT(error_of(good + "FLASER 99 1 2 0 0 0 0 0 0 1 h 2\n"), HasSubstr("count of 99"));
-  EXPECT_THAT(error_of(good + "FLASER 3 1 2 3 0 0 0 0 0 0 1 h 2\n"), HasSubstr("another raster"));
-  EXPECT_THAT(error_of(good + good), HasSubstr("does not grow"));
+TEST(Carmen, BadLinesAreLeftOutCountedAndTheFirstIsNamed) {
+  const std::string good = "FLASER 2 1 2 0 0 0 0 0 0 1 h 1\n", next = "FLASER 2 1 2 0 0 0 0 0 0 7 h 7\n";
+  for (const auto& [bad, why] : {std::pair<std::string, std::string>{"FLASER 2 1 2 0 0 0\n", "this line is cut short"},
+                                 {"FLASER 2 1 x 0 0 0 0 0 0 2 h 2\n", "has 'x' where a number"},
+                                 {"FLASER 99 1 2 0 0 0 0 0 0 2 h 2\n", "count of 99"},
+                                 {"FLASER 3 1 2 3 0 0 0 0 0 0 2 h 2\n", "another raster"},
+                                 {"FLASER 2 1 2 0 0 0 0 0 0 0.5 h 2\n", "does not grow"},
+                                 {good, "does not grow"}}) {
+    write_text(scratch("bad.log"), good + bad + next);
+    const CarmenLog log = read_carmen(scratch("bad.log"));
+    EXPECT_EQ(log.log.scans[0].stamp_s, (std::vector<double>{1, 7})) << bad;
+    EXPECT_EQ(log.log.scans[0].range_m.size(), 4u) << bad;
+    ASSERT_EQ(log.notes.size(), 1u) << bad;
+    EXPECT_THAT(log.notes[0], HasSubstr("1 line is left out, the first: ")) << bad;
+    EXPECT_THAT(log.notes[0], HasSubstr("bad.log:2: this line ")) << bad;
+    EXPECT_THAT(log.notes[0], HasSubstr(why));
+  }
+  write_text(scratch("cut.log"), good + "FLASER 2 1 2 0 0 0 0");  // as a logger leaves it that is stopped
+  EXPECT_THAT(read_carmen(scratch("cut.log")).notes, ElementsAre(HasSubstr("cut.log:2: this line is cut short")));
 }
 
-TEST(Carmen, ALastLineThatBreaksOffIsLeftOutWithANote) {
-  const std::string good = "FLASER 2 1 2 0 0 0 0 0 0 1 h 1\n";
-  write_text(scratch("cut.log"), good + "FLASER 2 1 2 0 0 0 0");
-  const CarmenLog log = read_carmen(scratch("cut.log"));
-  EXPECT_EQ(log.log.scans[0].size(), 1u);
-  ASSERT_EQ(log.notes.size(), 1u);
-  EXPECT_THAT(log.notes[0], HasSubstr("cut.log:2: this line is cut short"));
+TEST(Carmen, WhereMostLinesAreBadOrNoneIsOfALaserItIsAnError) {
+  write_text(scratch("none.log"), "# nothing\n");
+  EXPECT_THAT(error_of([] { read_carmen(scratch("none.log")); }), HasSubstr("none.log: has no FLASER"));
+  const std::string good = "FLASER 2 1 2 0 0 0 0 0 0 1 h 1\n", bad = "FLASER 2 1 2\n";
+  write_text(scratch("most.log"), good + bad + bad);
+  EXPECT_THAT(error_of([] { read_carmen(scratch("most.log")); }),
+              HasSubstr("most.log:2: this line is cut short; so are"));
+}
+
+TEST(Carmen, RangesThatAreNotNumbersAreNoEchoOrUnreadable) {
+  write_text(scratch("nan.log"), "FLASER 3 nan 2 inf 0 0 0 0 0 0 1 h 1\n");
+  const CarmenLog log = read_carmen(scratch("nan.log"));
+  EXPECT_TRUE(std::isnan(log.log.scans[0][0][0]));
+  EXPECT_EQ(log.log.scans[0][0][1], 2.0F);
+  EXPECT_EQ(log.log.scans[0][0][2], INFINITY);
+  EXPECT_TRUE(log.notes.empty());
 }
 
 TEST(Carmen, ARigWithoutAHorizontalLaserCannotBeWritten) {

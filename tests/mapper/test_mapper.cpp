@@ -14,6 +14,9 @@
 namespace adit {
 namespace {
 
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
 Log log_of(const PlanLog& plan) {
   Log log;
   log.rig.name = "flat";
@@ -78,6 +81,49 @@ TEST(Mapper, AnEmptyRecordingIsAnError) {
   Log log = log_of(tour());
   log.scans[0] = {};
   EXPECT_THROW(make_map(log, {}), Error);
+}
+
+TEST(Mapper, AGapInWhichTheCartStoodIsBridged) {
+  Log log = log_of(tour());
+  std::vector<double>& stamps = log.scans[0].stamp_s;
+  for (size_t n = 400; n < stamps.size(); ++n) stamps[n] += 30;
+  const Estimate e = make_map(log, {});
+  EXPECT_EQ(e.path.size(), stamps.size());
+  EXPECT_LT(ate_m(truth_of(tour()), e.planar), 0.1);
+}
+
+TEST(Mapper, OfALogThatAGapCutsTheLongestPieceIsMappedAndItIsSaid) {
+  const Scans& all = tour().scans;
+  std::vector<size_t> kept;
+  for (size_t n = 0; n < all.size(); ++n)
+    if (n < 100 || all.stamp_s[n] > all.stamp_s[100] + 30) kept.push_back(n);
+  Log log = log_of(tour());
+  log.scans[0] = chosen(all, kept);
+  const Estimate e = make_map(log, {});
+  EXPECT_EQ(e.path.size(), kept.size() - 100);
+  EXPECT_EQ(e.path.stamp_s.front(), all.stamp_s[kept[100]]);
+  ASSERT_FALSE(e.notes.empty());
+  EXPECT_THAT(e.notes[0], HasSubstr("the log falls into 2 pieces that nothing connects"));
+  EXPECT_THAT(e.notes[0],
+              HasSubstr(std::to_string(kept.size() - 100) + " of " + std::to_string(kept.size()) + " scans"));
+}
+
+TEST(Mapper, ScansWhoseStampsDoNotGrowAreLeftOutAndCounted) {
+  const Scans& all = tour().scans;
+  const Log sound = log_of(tour());
+  Log log = sound;
+  std::vector<size_t> numbers;
+  for (size_t n = 0; n < all.size(); ++n) {
+    numbers.push_back(n);
+    if (n % 100 == 50) numbers.push_back(n);  // told twice
+  }
+  log.scans[0] = chosen(all, numbers);
+  const size_t twice = numbers.size() - all.size();
+  for (size_t n = 200; n < 203; ++n) log.scans[0].stamp_s[n] -= 1e4;
+  const Estimate e = make_map(log, {});
+  EXPECT_EQ(e.path.size(), all.size() - 3);
+  EXPECT_THAT(e.notes, Contains(HasSubstr(std::to_string(twice + 3) + " of " + std::to_string(numbers.size()) +
+                                          " scans are left out: their stamps do not grow")));
 }
 
 TEST(Mapper, TheSameMapOnAnyNumberOfThreads) {
