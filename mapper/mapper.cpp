@@ -36,15 +36,14 @@ bool nods(const Log& log) {
 }
 
 /// What the lasers other than the horizontal one add: path, points, surface, volume and notes. Leaves planar and grid alone.
-/// Scans of tilted mounts are in `log` alone and give points alone.
+/// Scans of tilted mounts are in `log` alone: what they see is in points and volume, the path does without them.
 void add_height(const Log& level, const Log& log, const MapSettings& settings, const Progress& progress,
                 Estimate& estimate) {
   TiltSolution tilt = solve_tilt(level, estimate.path.stamp_s, estimate.planar, settings.tilt, progress);
   if (!tilt.note.empty()) estimate.notes.push_back(tilt.note);
   estimate.path = std::move(tilt.path);
-  const Log corrected = without_bias(level, tilt.range_bias_m);
-  estimate.points =
-      map_points(nods(log) ? without_bias(log, tilt.range_bias_m) : corrected, tilt.dense, settings.volume);
+  const Log corrected = without_bias(nods(log) ? log : level, tilt.range_bias_m);
+  estimate.points = map_points(corrected, tilt.dense, settings.volume);
   MappedVoid mapped = map_void(corrected, tilt.dense, settings.volume, progress);
   estimate.surface = std::move(mapped.surface);
   estimate.volume_m3 = mapped.volume_m3;

@@ -65,7 +65,11 @@ struct Step {
 class Tracker {
  public:
   Tracker(const Scans& scans, const Mount& mount, const OdometrySettings& s)
-      : scans_(scans), fan_(fan_of(mount)), s_(s), scan_s_(fan_.offset_s.empty() ? 0 : scan_time(fan_)) {}
+      : scans_(scans),
+        fan_(fan_of(mount)),
+        s_(s),
+        scan_s_(fan_.offset_s.empty() ? 0 : scan_time(fan_)),
+        nods_at_stands_(mount.tilt.nods() && mount.tilt.standing_only) {}
 
   void begin() {
     const ScanPoints points = scan_points(scans_[0], fan_, {}, s_.points);
@@ -88,7 +92,7 @@ class Tracker {
       match = place(out.points, match->X_AB, prior, X_before, dt_s);
     }
     if (!match) match = search(out.points, predicted, X_before, dt_s);
-    if (gap && !(match && match->known_share >= sure_share && !match->degenerate)) {
+    if (gap && !nods_at_stands_ && !(match && match->known_share >= sure_share && !match->degenerate)) {
       out.breaks = true;
       begin_at(out);
       return out;
@@ -167,6 +171,7 @@ class Tracker {
   const BeamFan fan_;
   const OdometrySettings& s_;
   const double scan_s_;
+  const bool nods_at_stands_;  // its level scans are far apart only where the vehicle stands
   Twist2 twist_;
   std::deque<KeyScan> keys_;
   LocalMap map_;

@@ -19,12 +19,13 @@ struct Section {
   Pose X_MS;  // of its first beam
 };
 
-/// Scans of a laser at least section_m apart, or turned by 2 degrees.
+/// Scans of a laser at least section_m apart, or turned by 2 degrees, be it by a nodding mount.
 std::vector<Section> sections_of(const Log& log, int laser, const Trajectory& X_MB, const VolumeSettings& settings) {
   constexpr double turn_rad = 2 * std::numbers::pi / 180;
   std::vector<Section> sections;
   for (const size_t scan : covered_scans(log, laser, X_MB)) {
-    const Pose X_MS = X_MB.at(log.scans[laser].stamp_s[scan]) * log.rig.mounts[laser].X_BS;
+    const Scans& scans = log.scans[laser];
+    const Pose X_MS = X_MB.at(scans.stamp_s[scan]) * scans.X_BS(log.rig.mounts[laser], scan);
     if (!sections.empty()) {
       const Pose step = sections.back().X_MS.inverse() * X_MS;
       if (step.translation().norm() < settings.section_m && Eigen::AngleAxisd(step.linear()).angle() < turn_rad)

@@ -6,9 +6,11 @@
 #include "tests/support/shapes.h"
 #include "tests/support/tube_log.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 namespace adit {
@@ -97,6 +99,45 @@ TEST(Volume, TruePosesOfAShakenCartGiveTheSameVolume) {
   // Shaken, the forward fans sweep some of what lies ahead of the last section, and no rock.
   EXPECT_GT(*all.volume_m3, 1.02 * *mapped.volume_m3);
   EXPECT_LT(*all.volume_m3, 1.01 * length_m * width_m * height_m);
+}
+
+/// How far it is from a point inside of a box to its walls.
+double range_in(const Eigen::AlignedBox3d& box, const Vec3& p, const Vec3& d) {
+  double range_m = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k)
+    if (d[k] != 0) range_m = std::min(range_m, ((d[k] > 0 ? box.max()[k] : box.min()[k]) - p[k]) / d[k]);
+  return range_m;
+}
+
+TEST(Volume, OfAStandIsWhatItsNoddingLaserSweeps) {
+  const Eigen::AlignedBox3d box(Vec3(-1, -1.85, 0), Vec3(7, 1.85, 1.9));
+  Log log{load_rig("groundhog_tilt", 38400), {}};
+  log.scans.resize(2);
+  const Mount& mount = log.rig.mounts[0];
+  Scans& scans = log.scans[0];
+  scans.beams = mount.laser.beams;
+  log.scans[1].beams = log.rig.mounts[1].laser.beams;
+  for (double t = 0; t <= mount.tilt.period_s; t += 0.2) {
+    scans.stamp_s.push_back(t);
+    scans.tilt_rad.push_back(mount.tilt.at(t));
+    const Pose X_WS = mount.X_BS_at(scans.tilt_rad.back());
+    for (int k = 0; k < scans.beams; ++k) {
+      const double a = mount.laser.beam_angle_rad(k);
+      scans.range_m.push_back(
+          static_cast<float>(range_in(box, X_WS.translation(), X_WS.linear() * Vec3(std::cos(a), std::sin(a), 0))));
+    }
+  }
+  const Trajectory stands{{-1, 20}, {Pose::Identity(), Pose::Identity()}};
+  // Counted on a lattice: what lies between the lowest and the highest half plane ahead of the mirror.
+  const Vec3 o = mount.X_BS.translation();
+  constexpr double step_m = 0.04;
+  double swept_m3 = 0;
+  for (double x = box.min().x() + step_m / 2; x < box.max().x(); x += step_m)
+    for (double z = box.min().z() + step_m / 2; z < box.max().z(); z += step_m) {
+      const double down = std::atan2(o.z() - z, x - o.x());
+      if (down > mount.tilt.from_rad && down < mount.tilt.to_rad) swept_m3 += step_m * step_m * box.sizes().y();
+    }
+  EXPECT_NEAR(map_void(log, stands, fine()).volume_m3.value() / swept_m3, 1, 0.02);
 }
 
 TEST(Volume, ARigWithoutAnUpwardLaserMapsNone) {
