@@ -39,15 +39,27 @@ Label label_of(const std::string& file, double value) {
 }  // namespace
 
 const std::map<std::string, int>& label_ids() {
-  static const std::map<std::string, int> ids{{"none", 0}, {"floor", 1},   {"roof", 2},  {"rib", 3},
-                                              {"cap", 4},  {"vehicle", 5}, {"pusher", 6}};
+  static const std::map<std::string, int> ids{
+      {"none", 0},    {"floor", 1}, {"roof", 2},      {"rib", 3},       {"cap", 4},   {"vehicle", 5}, {"pusher", 6},
+      {"rubble", 7},  {"talus", 8}, {"post", 9},      {"crossbar", 10}, {"crib", 11}, {"bolt", 12},   {"rail", 13},
+      {"tie", 14},    {"belt", 15}, {"stopping", 16}, {"door", 17},     {"pipe", 18}, {"cable", 19},  {"water", 20},
+      {"sludge", 21}, {"car", 22},  {"beam", 23},     {"block", 24}};
   return ids;
 }
 
 const std::map<std::string, int>& material_ids() {
-  static const std::map<std::string, int> ids{{"none", 0},     {"coal", 1},      {"shale", 2},
-                                              {"fireclay", 3}, {"rock_dust", 4}, {"block", 5}};
+  static const std::map<std::string, int> ids{{"none", 0},      {"coal", 1},  {"shale", 2},  {"fireclay", 3},
+                                              {"rock_dust", 4}, {"block", 5}, {"timber", 6}, {"steel", 7},
+                                              {"water", 8},     {"mud", 9}};
   return ids;
+}
+
+bool is_ground(Label label) {
+  return label == Label::floor || label == Label::rubble || label == Label::talus || label == Label::sludge;
+}
+
+bool is_object(Label label) {
+  return label >= Label::post && label != Label::sludge;
 }
 
 std::string label_name(Label label) {

@@ -12,12 +12,55 @@
 namespace adit {
 
 /// What a face of a mine is. The ids stand in mesh files and in truth.json.
-enum class Label : std::uint8_t { none = 0, floor = 1, roof = 2, rib = 3, cap = 4, vehicle = 5, pusher = 6 };
+/// From `post` on, `sludge` left out, they are things in a mine: closed bodies, whose faces look into them (they bound the
+/// void too).
+enum class Label : std::uint8_t {
+  none = 0,
+  floor = 1,
+  roof = 2,
+  rib = 3,
+  cap = 4,
+  vehicle = 5,
+  pusher = 6,
+  rubble = 7,  // what fell from the roof, where it lies as ground
+  talus = 8,   // what spalled from the ribs, at their foot
+  post = 9,
+  crossbar = 10,
+  crib = 11,
+  bolt = 12,
+  rail = 13,
+  tie = 14,
+  belt = 15,
+  stopping = 16,
+  door = 17,
+  pipe = 18,
+  cable = 19,
+  water = 20,
+  sludge = 21,  // floor under mud of iron
+  car = 22,
+  beam = 23,   // fallen
+  block = 24,  // loose rock
+};
+/// Whether wheels stand on it.
+bool is_ground(Label label);
+/// Whether it is a closed body in the void, not rock.
+bool is_object(Label label);
 const std::map<std::string, int>& label_ids();
 std::string label_name(Label label);
 
 /// What a face's rock is, under its dust and water. The ids stand in mesh files and in truth.json.
-enum class Material : std::uint8_t { none = 0, coal = 1, shale = 2, fireclay = 3, rock_dust = 4, block = 5 };
+enum class Material : std::uint8_t {
+  none = 0,
+  coal = 1,
+  shale = 2,
+  fireclay = 3,
+  rock_dust = 4,
+  block = 5,
+  timber = 6,
+  steel = 7,
+  water = 8,
+  mud = 9
+};
 const std::map<std::string, int>& material_ids();
 
 /// An indexed triangle mesh in metres. Faces are counter-clockwise seen from outside of the enclosed volume: the
@@ -26,7 +69,8 @@ struct Mesh {
   std::vector<Vec3> vertex;                        // (n x 3)
   std::vector<std::array<std::uint32_t, 3>> face;  // (m x 3)
   std::vector<Label> label;                        // (m) or empty
-  std::vector<int> part;            // (m) or empty: id of the passage (floor, roof) or pillar (rib); -1 none
+  std::vector<int> part;            // (m) or empty: id of the passage (floor, roof, talus, sludge), pillar (rib)
+                                    // or object; -1 none
   std::vector<float> reflectivity;  // (m) or empty: diffuse, at 905 nm, 0..1
   std::vector<int> passage;         // (m) or empty: id of the passage that a face bounds
   std::vector<Material> material;   // (m) or empty

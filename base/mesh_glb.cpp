@@ -21,21 +21,6 @@ void put(std::ostream& out, T v) {
   out.write(reinterpret_cast<const char*>(&v), sizeof v);
 }
 
-std::array<double, 3> colour_of(Label label) {
-  switch (label) {
-    case Label::floor:
-      return {0.42, 0.38, 0.33};
-    case Label::roof:
-      return {0.55, 0.55, 0.58};
-    case Label::rib:
-      return {0.66, 0.64, 0.60};
-    case Label::cap:
-      return {0.75, 0.35, 0.20};
-    default:
-      return {0.5, 0.5, 0.5};
-  }
-}
-
 // W has z up, glTF y: (x, y, z) becomes (x, z, -y).
 std::array<float, 3> y_up(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.z()), static_cast<float>(-v.y())};
@@ -104,6 +89,47 @@ class Contents {
 
 }  // namespace
 
+std::array<double, 3> label_colour(Label label) {
+  switch (label) {
+    case Label::floor:
+      return {0.42, 0.38, 0.33};
+    case Label::roof:
+      return {0.55, 0.55, 0.58};
+    case Label::rib:
+      return {0.66, 0.64, 0.60};
+    case Label::cap:
+      return {0.75, 0.35, 0.20};
+    case Label::rubble:
+    case Label::talus:
+    case Label::block:
+      return {0.35, 0.33, 0.32};
+    case Label::post:
+    case Label::crossbar:
+    case Label::crib:
+    case Label::tie:
+    case Label::beam:
+      return {0.55, 0.38, 0.20};
+    case Label::bolt:
+    case Label::rail:
+    case Label::pipe:
+    case Label::car:
+      return {0.45, 0.25, 0.18};
+    case Label::water:
+      return {0.15, 0.30, 0.40};
+    case Label::sludge:
+      return {0.80, 0.55, 0.15};
+    case Label::cable:
+    case Label::belt:
+      return {0.12, 0.12, 0.13};
+    case Label::stopping:
+      return {0.70, 0.70, 0.68};
+    case Label::door:
+      return {0.75, 0.15, 0.12};
+    default:
+      return {0.5, 0.5, 0.5};
+  }
+}
+
 GlbWriter::GlbWriter(std::string file) : file_(std::move(file)), positions_(file_, "positions") {}
 
 void GlbWriter::add(const Mesh& m, const std::vector<std::uint32_t>& vertex_id) {
@@ -134,7 +160,7 @@ void GlbWriter::close() {
     for (const auto& [name, id] : label_ids()) {
       const auto found = indices_.find(static_cast<Label>(id));
       if (found == indices_.end()) continue;
-      contents.add_primitive(name, colour_of(found->first), found->second->bytes());
+      contents.add_primitive(name, label_colour(found->first), found->second->bytes());
       buffer.push_back(found->second.get());
     }
   }

@@ -66,6 +66,9 @@ class GlbWriter {
   std::array<float, 3> low_{}, high_{};
 };
 
+/// The colour in which programs of others show a label: red, green, blue, 0 to 1.
+std::array<double, 3> label_colour(Label label);
+
 /// Ids of the vertices of a mesh that is the only part of itself.
 std::vector<std::uint32_t> all_vertices(const Mesh& mesh);
 

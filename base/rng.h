@@ -38,6 +38,9 @@ enum class Draw : std::uint32_t {
   laser_curve,
   laser_warm_up,
   fault_loss,
+  world_decay,
+  world_furniture,
+  set_value,
 };
 
 /// Random numbers have addresses, not an order: the same (seed, draw, i, j) always gives the same number.

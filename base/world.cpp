@@ -62,14 +62,24 @@ Pillar pillar_of(const json& j) {
   return p;
 }
 
+MineObject object_of(const json& j) {
+  const auto label = label_ids().find(j.at("label").get<std::string>());
+  if (label == label_ids().end()) throw Error("an object has the unknown label " + j.at("label").dump());
+  return {static_cast<Label>(label->second), j.at("passage").get<int>(),    vec3_of(j.at("middle_W")),
+          vec3_of(j.at("size_m")),           j.at("yaw_rad").get<double>(), j.at("volume_m3").get<double>(),
+          j.value("ground", false),          j.value("blocks", false)};
+}
+
 void read_truth(const json& j, World& world) {
   world.name = j.at("name").get<std::string>();
   world.numbers = {j.at("volume_m3").get<double>(), j.at("floor_area_m2").get<double>(),
-                   j.at("extraction_ratio").get<double>(), j.at("loops").get<int>()};
+                   j.at("extraction_ratio").get<double>(), j.at("loops").get<int>(), j.value("bare_volume_m3", 0.0)};
   for (const json& v : j.at("junctions"))
     world.junctions.push_back({vec3_of(v.at("p_W")), v.at("passages").get<std::vector<int>>()});
   for (const json& v : j.at("passages")) world.passages.push_back(passage_of(v));
   for (const json& v : j.at("pillars")) world.pillars.push_back(pillar_of(v));
+  if (j.contains("objects"))
+    for (const json& v : j["objects"]) world.objects.push_back(object_of(v));
   if (j.contains("outline"))
     for (const json& v : j["outline"]) world.outline.push_back(vec2_of(v));
 }
@@ -134,7 +144,7 @@ Mesh floor_of(const World& world) {
   Mesh floor;
   std::vector<std::int64_t> new_index(mesh.vertex.size(), -1);
   for (size_t f = 0; f < mesh.face.size(); ++f) {
-    if (mesh.label.size() <= f || mesh.label[f] != Label::floor) continue;
+    if (mesh.label.size() <= f || !is_ground(mesh.label[f])) continue;
     std::array<std::uint32_t, 3> face;
     for (int k = 0; k < 3; ++k) {
       std::int64_t& index = new_index[mesh.face[f][k]];
@@ -145,7 +155,7 @@ Mesh floor_of(const World& world) {
       face[k] = static_cast<std::uint32_t>(index);
     }
     floor.face.push_back(face);
-    floor.label.push_back(Label::floor);
+    floor.label.push_back(mesh.label[f]);
     if (!mesh.part.empty()) floor.part.push_back(mesh.part[f]);
     if (!mesh.reflectivity.empty()) floor.reflectivity.push_back(mesh.reflectivity[f]);
   }

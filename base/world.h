@@ -33,12 +33,25 @@ struct Pillar {
   double area_m2;
 };
 
+/// A thing in a mine, or what fell in it. Its id is its index in World::objects.
+struct MineObject {
+  Label label;
+  int passage = -1;              // in which it lies
+  Vec3 middle_W = Vec3::Zero();  // of its box
+  Vec3 size_m = Vec3::Zero();    // along x, y, z of the box
+  double yaw_rad = 0;            // of the box's x
+  double volume_m3 = 0;
+  bool ground = false;  // a part of the floor's surface (rubble): no closed body of its own
+  bool blocks = false;  // no vehicle gets past it
+};
+
 /// Exact numbers of a mine.
 struct WorldNumbers {
   double volume_m3 = 0;         // enclosed void
   double floor_area_m2 = 0;     // plan area of the void at mid height
   double extraction_ratio = 0;  // floor area / (floor area + pillar areas)
   int loops = 0;                // independent cycles of the junction graph
+  double bare_m3 = 0;           // void with the bodies in it taken out, i.e. of the rock alone; 0: there are none
 };
 
 /// A mine with its truth, in W.
@@ -50,13 +63,14 @@ struct World {
   std::vector<Pillar> pillars;
   std::vector<Vec2> outline = {};  // outer rim of the void at mid height, counter-clockwise; empty where not known
   WorldNumbers numbers;
+  std::vector<MineObject> objects = {};
 };
 
 /// A basis of the junction graph's cycles, each the passages that it runs through in their order: as many as
 /// numbers.loops.
 std::vector<std::vector<int>> cycle_basis(const World& world);
 
-/// Ground that a wheel can stand on: the faces labelled floor.
+/// Ground that a wheel can stand on: floor, rubble, talus, sludge.
 Mesh floor_of(const World& world);
 /// Hex digest of mesh and numbers; scores are comparable only under the same one.
 std::string world_hash(const World& world);

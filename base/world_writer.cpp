@@ -48,6 +48,19 @@ json pillar_of(const Pillar& p, size_t id) {
   return {{"id", id}, {"area_m2", p.area_m2}, {"outline", array_of(p.outline)}};
 }
 
+json object_of(const MineObject& o, size_t id) {
+  json j = {{"id", id},
+            {"label", label_name(o.label)},
+            {"passage", o.passage},
+            {"middle_W", array_of(o.middle_W)},
+            {"size_m", array_of(o.size_m)},
+            {"yaw_rad", o.yaw_rad},
+            {"volume_m3", o.volume_m3}};
+  if (o.ground) j["ground"] = true;
+  if (o.blocks) j["blocks"] = true;
+  return j;
+}
+
 // A list with one entry a line: readable, and small beside a full indentation. No more than an entry is held.
 template <class T, class F>
 void put_lines(std::ostream& out, const std::string& key, const std::vector<T>& entries, const F& json_of) {
@@ -94,16 +107,20 @@ void WorldWriter::close(const World& world) {
                    {"reflectivity_905nm", sum.reflected / sum.area_m2},
                    {"wetness", sum.wet / sum.area_m2}};
   }
+  json labels = json::object();  // those of every mine, and those that this one has
+  for (const auto& [name, id] : label_ids())
+    if (id <= static_cast<int>(Label::pusher) || labels_.contains(static_cast<Label>(id))) labels[name] = id;
   const WorldNumbers& n = world.numbers;
   write_whole(dir_ + "/truth.json", [&](const std::string& temporary) {
     std::ofstream out(temporary, std::ios::binary);
     out << "{\n  \"name\": " << json(world.name).dump();
     const auto put = [&](const char* key, const json& value) { out << ",\n  \"" << key << "\": " << value.dump(); };
     put("volume_m3", n.volume_m3);
+    if (n.bare_m3 > 0) put("bare_volume_m3", n.bare_m3);
     put("floor_area_m2", n.floor_area_m2);
     put("extraction_ratio", n.extraction_ratio);
     put("loops", n.loops);
-    put("labels", label_ids());
+    put("labels", labels);
     put("materials", materials);
     put("rocks", rocks);
     put("cycles", cycle_basis(world));
@@ -111,6 +128,7 @@ void WorldWriter::close(const World& world) {
     put_lines(out, "junctions", world.junctions, junction_of);
     put_lines(out, "passages", world.passages, passage_of);
     put_lines(out, "pillars", world.pillars, pillar_of);
+    if (!world.objects.empty()) put_lines(out, "objects", world.objects, object_of);
     out << "\n}\n";
     out.close();
     if (!out) throw Error(dir_ + "/truth.json: cannot write: " + std::strerror(errno), Fault::file);

@@ -7,6 +7,7 @@
 #include "cli/convert.h"
 #include "cli/scenario.h"
 #include "cli/scores.h"
+#include "cli/set_command.h"
 #include "cli/stages.h"
 #include "eval/compare.h"
 #include "eval/explain.h"
@@ -271,9 +272,10 @@ int list_command(const std::string& what, Console& console) {
 }
 
 int help_command(const std::string& topic, Console& console) {
-  if (topic != "scenario") throw Error("help " + topic + ": the topics are: scenario");
+  if (topic != "scenario" && topic != "set") throw Error("help " + topic + ": the topics are: scenario, set");
   Scenario s;
-  for (const Field& f : fields(s)) {
+  MineSet set;
+  for (const Field& f : topic == "set" ? fields(set) : fields(s)) {
     const std::string value = to_toml({f});
     const std::string shown = value.substr(value.find(" = ") + 3);
     std::string line = f.key + " = " + shown.substr(0, shown.find('\n'));

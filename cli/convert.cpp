@@ -6,6 +6,7 @@
 #include "base/cloud.h"
 #include "base/error.h"
 #include "base/h5.h"
+#include "base/mine_export.h"
 #include "base/parts.h"
 
 #include <nlohmann/json.hpp>
@@ -144,6 +145,34 @@ int join_command(const std::string& from, const std::string& to, Console& consol
   return 0;
 }
 
+bool is_world(const std::string& name) {
+  return fs::exists(name + "/truth.json") && fs::exists(name + "/mine.ply");
+}
+
+// A mine's folder, in the formats of other programs.
+int world_convert(const std::string& from, const std::string& to, Console& console) {
+  constexpr double per_m2 = 200;  // of a cloud: a point in 7 cm
+  const std::string ending = fs::path(to).extension().string();
+  if (!ending.empty() && ending != ".obj" && ending != ".sdf" && ending != ".json" && ending != ".ply")
+    throw Error(to +
+                ": of a mine adit writes .obj, .sdf (Gazebo), .json (instances), .ply (labelled cloud) and a folder "
+                "(SemanticKITTI)");
+  const World world = load_world(from);
+  if (ending == ".obj")
+    write_obj(to, world);
+  else if (ending == ".sdf")
+    write_sdf(to, world);
+  else if (ending == ".json")
+    write_instances(to, world);
+  else if (ending == ".ply")
+    write_labelled_ply(to, surface_cloud(world, per_m2));
+  else
+    write_kitti_frame(to, surface_cloud(world, per_m2));
+  console.result("written: " + to);
+  console.json(nlohmann::ordered_json{{"from", from}, {"to", to}}.dump());
+  return 0;
+}
+
 }  // namespace
 
 Log load_any_log(const std::string& file, Console& console) {
@@ -162,6 +191,7 @@ void write_any_log(const std::string& file, const Log& log) {
 
 int convert_command(const std::string& from, const std::string& to, const std::string& truth_file, int every,
                     Console& console) {
+  if (is_world(from)) return world_convert(from, to, console);
   format_of(to);  // a bad name is said before a long read
   if (is_parts(from)) return join_command(from, to, console);
   const Content content = read_content(from, truth_file);

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/convert.h"
 #include "cli/rig_command.h"
+#include "cli/set_command.h"
 #include "cli/stats_command.h"
 
 #include <CLI/CLI.hpp>
@@ -42,6 +43,7 @@ int dispatch(CLI::App& app, const Words& w) {
   set_threads(w.threads);
   if (app.got_subcommand("run")) return run_command(w.first, w.common, console);
   if (app.got_subcommand("world") && !w.stats.empty()) return stats_command(w.stats, console);
+  if (app.got_subcommand("world") && is_set(w.first)) return set_command(w.first, w.common, console);
   if (app.got_subcommand("world"))
     return w.check.empty() ? world_command(w.first, w.common, console) : check_command(w.check, console);
   if (app.got_subcommand("drive")) return drive_command(w.first, w.world, w.common, console);
@@ -83,7 +85,8 @@ void add_commands(CLI::App& app, Words& w) {
   run->add_option("scenario", w.first, "bundled name or TOML file")->required();
   add_common(run, w, true);
   CLI::App* world = app.add_subcommand("world", "a mine alone, or the check of a mesh");
-  CLI::Option* scenario = world->add_option("scenario", w.first, "bundled name or TOML file");
+  CLI::Option* scenario =
+      world->add_option("scenario", w.first, "bundled name or TOML file; or the TOML file of a set of mines");
   CLI::Option* check = world->add_option(
       "--check", w.check,
       "verify a mesh (PLY, OBJ): closed, oriented, labelled, not self-crossing; or a world's folder, its truth too");
@@ -116,9 +119,13 @@ void add_commands(CLI::App& app, Words& w) {
   convert
       ->add_option(
           "from", w.first,
-          ".h5, CARMEN .log or .clf, ROS 1 .bag, .tum, .ply, .pcd, or recording/parts of a drive that was killed")
+          ".h5, CARMEN .log or .clf, ROS 1 .bag, .tum, .ply, .pcd, recording/parts of a drive that was killed, or the "
+          "folder of a mine")
       ->required();
-  convert->add_option("to", w.second, "the same, or a folder in SemanticKITTI's layout")->required();
+  convert
+      ->add_option("to", w.second,
+                   "the same, or a folder in SemanticKITTI's layout; of a mine .obj, .sdf, .json, .ply or a folder")
+      ->required();
   convert->add_option("--truth", w.truth, "truth.h5 of the recording; else the one beside it");
   convert->add_option("--every", w.every, "of clouds: every so many scans")->check(CLI::Range(1, 1000000));
   add_common(convert, w, false);
@@ -129,7 +136,7 @@ void add_commands(CLI::App& app, Words& w) {
   list->add_option("what", w.first, "scenarios, vehicles, rigs, lasers, views or metrics");
   add_common(list, w, false);
   CLI::App* help = app.add_subcommand("help", "this text, or a topic");
-  help->add_option("topic", w.first, "scenario");
+  help->add_option("topic", w.first, "scenario or set");
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include "base/error.h"
 #include "base/world.h"
+#include "cli/scenario.h"
+#include "worlds/decay.h"
 #include "worlds/stats.h"
 
 #include <nlohmann/json.hpp>
@@ -28,15 +30,69 @@ std::vector<std::string> worlds_under(const std::string& dir) {
   return found;
 }
 
+// What a mine's settings state, and what was measured of it; by name.
+using Stated = std::map<std::string, std::pair<std::vector<double>, std::vector<double>>>;
+
+double mean_of(const std::vector<double>& values) {
+  return values.empty() ? 0 : spread_of(values).mean;
+}
+
+// Of a mine whose scenario lies beside it.
+void compare(const std::string& mine, const MineSamples& own, Stated& stated) {
+  const std::string file = (fs::path(mine).parent_path() / "scenario.toml").string();
+  if (!fs::exists(file)) return;
+  const WorldSettings s = in_condition(load_scenario(file).world);
+  const auto add = [&](const std::string& name, double asked, double found) {
+    stated[name].first.push_back(asked);
+    stated[name].second.push_back(found);
+  };
+  add("height_m", s.height_m, mean_of(own.height_m));
+  if (s.kind == "panel") add("width_m", s.panel.width_m, mean_of(own.width_m));
+  const auto things = [&](Label label, double asked) {
+    const auto found = own.per_100m.find(label);
+    if (asked > 0) add(label_name(label) + "_per_100m", asked, found == own.per_100m.end() ? 0 : found->second.back());
+  };
+  things(Label::crib, s.furniture.cribs_per_100m);
+  things(Label::block, s.furniture.blocks_per_100m);
+  things(Label::water, s.furniture.pools_per_100m);
+  things(Label::car, s.furniture.cars_per_100m);
+  things(Label::beam, s.furniture.beams_per_100m);
+  things(Label::rubble, s.decay.falls_per_100m * (1 - s.decay.cleared_share));
+}
+
+void print_stated(const Stated& stated, Console& console, ordered_json& all) {
+  if (stated.empty()) return;
+  console.result("stated and measured   n    stated  measured   ratio");
+  for (const auto& [name, both] : stated) {
+    const double asked = mean_of(both.first), found = mean_of(both.second);
+    char line[160];
+    std::snprintf(line, sizeof line, "%-18s %5zu %9.3f %9.3f %7.2f", name.c_str(), both.first.size(), asked, found,
+                  found / asked);
+    console.result(line);
+    all["stated"][name] = {{"n", both.first.size()}, {"stated", asked}, {"measured", found}};
+  }
+}
+
 }  // namespace
 
 int stats_command(const std::string& dir, Console& console) {
   MineSamples samples;
   const std::vector<std::string> mines = worlds_under(dir);
-  for (const std::string& mine : mines) measure(load_world(mine), samples);
-  const std::vector<std::pair<std::string, const std::vector<double>*>> rows{
+  Stated stated;
+  for (const std::string& mine : mines) {
+    MineSamples own;
+    measure(load_world(mine), own);
+    compare(mine, own, stated);
+    append(samples, own);
+  }
+  std::vector<std::pair<std::string, const std::vector<double>*>> rows{
       {"width_m", &samples.width_m},   {"height_m", &samples.height_m},   {"grade_percent", &samples.grade_percent},
       {"length_m", &samples.length_m}, {"pillar_m2", &samples.pillar_m2}, {"extraction_ratio", &samples.extraction}};
+  if (!samples.per_100m.empty()) {
+    rows.emplace_back("blocked_share", &samples.blocked_share);
+    rows.emplace_back("bodies_share", &samples.bodies_share);
+  }
+  for (const auto& [label, values] : samples.per_100m) rows.emplace_back(label_name(label) + "/100m", &values);
   ordered_json all{{"mines", mines.size()}};
   console.result(std::to_string(mines.size()) + " mines\n" +
                  "                       n      mean        sd        p5       p50       p95");
@@ -54,6 +110,7 @@ int stats_command(const std::string& dir, Console& console) {
     all["junctions"][std::to_string(degree)] = n;
   }
   console.result(degrees);
+  print_stated(stated, console, all);
   console.json(all.dump());
   return 0;
 }

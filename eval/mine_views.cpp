@@ -25,6 +25,7 @@ struct Place {
 Colour colour_of(const Mesh& mesh, const std::vector<float>& bright, std::uint32_t v, Label label) {
   const Colour warm = label == Label::floor ? rgb(0xb7a894) : label == Label::roof ? rgb(0xc2c2c4) : rgb(0xbab5b0);
   if (label == Label::cap) return rgb(0x9a6a4a);
+  if (label >= Label::rubble) return thing_colour(label);
   if (mesh.reflectivity.empty()) return mix(rgb(0x000000), warm, 0.65);
   return mix(rgb(0x101012), warm, std::clamp(0.25 + 1.1 * bright[v], 0.0, 1.0));
 }

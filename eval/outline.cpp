@@ -17,7 +17,7 @@ struct Edge {
 std::vector<Edge> floor_rim(const Mesh& mesh) {
   std::vector<Edge> all, rim;
   for (size_t f = 0; f < mesh.face.size(); ++f) {
-    if (label_of(mesh, f) != Label::floor) continue;
+    if (!is_ground(label_of(mesh, f))) continue;
     for (int k = 0; k < 3; ++k) all.push_back({mesh.face[f][k], mesh.face[f][(k + 1) % 3]});
   }
   std::sort(all.begin(), all.end());

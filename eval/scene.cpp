@@ -17,6 +17,14 @@ std::optional<Vec3> project(const Camera& camera, int width, int height, const V
   return Vec3(width / 2.0 + right.dot(d) * px_per_m, height / 2.0 - above.dot(d) * px_per_m, depth);
 }
 
+namespace {
+
+bool round(Label label) {
+  return label == Label::post || label == Label::pipe || label == Label::cable || label == Label::water;
+}
+
+}  // namespace
+
 Skin skin_of(const Mesh& mesh, const std::function<Colour(std::uint32_t, Label)>& colour_of,
              const std::function<bool(size_t)>& keep) {
   constexpr int labels = 8;
@@ -31,7 +39,8 @@ Skin skin_of(const Mesh& mesh, const std::function<Colour(std::uint32_t, Label)>
     std::array<std::uint32_t, 3> face;
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t v = mesh.face[f][k];
-      std::uint32_t& index = copy[v][static_cast<int>(label) % labels];
+      std::uint32_t own = none;  // bodies have sharp edges
+      std::uint32_t& index = is_object(label) && !round(label) ? own : copy[v][static_cast<int>(label) % labels];
       if (index == none) {
         index = static_cast<std::uint32_t>(skin.p.size());
         skin.p.push_back(mesh.vertex[v].cast<float>());
@@ -45,6 +54,43 @@ Skin skin_of(const Mesh& mesh, const std::function<Colour(std::uint32_t, Label)>
   }
   for (auto& n : skin.normal) n.normalize();
   return skin;
+}
+
+Colour thing_colour(Label label) {
+  switch (label) {
+    case Label::post:
+    case Label::crossbar:
+    case Label::crib:
+    case Label::beam:
+      return rgb(0xb98a4e);
+    case Label::tie:
+      return rgb(0x6e5236);
+    case Label::bolt:
+    case Label::rail:
+      return rgb(0x8e5a44);
+    case Label::pipe:
+      return rgb(0x7d8f9c);
+    case Label::car:
+      return rgb(0xa0522d);
+    case Label::belt:
+      return rgb(0x3a3f45);
+    case Label::cable:
+      return rgb(0x23252a);
+    case Label::stopping:
+      return rgb(0xc9c6bd);
+    case Label::door:
+      return rgb(0xb03a2e);
+    case Label::water:
+      return rgb(0x2f5d73);
+    case Label::sludge:
+      return rgb(0xc98a2b);
+    case Label::talus:
+      return rgb(0x4d4a49);
+    case Label::rubble:
+      return rgb(0x6d6863);
+    default:
+      return rgb(0x837c76);  // block
+  }
 }
 
 Skin tube(const std::vector<Vec3>& line, double radius_m, Colour colour) {

@@ -54,6 +54,8 @@ std::optional<Vec3> project(const Camera& camera, int width, int height, const V
 /// @param colour_of  colour of a vertex (index, label of the face)
 Skin skin_of(const Mesh& mesh, const std::function<Colour(std::uint32_t, Label)>& colour_of,
              const std::function<bool(size_t)>& keep = {});
+/// How a thing in a mine is painted, or what lies on its floor.
+Colour thing_colour(Label label);
 /// A tube of eight sides around a line.
 Skin tube(const std::vector<Vec3>& line, double radius_m, Colour colour);
 /// Adds the triangles of `more`.

@@ -49,7 +49,7 @@ Colour rock_colour(Label label) {
     case Label::rib:
       return rgb(0x6f6c6b);
     default:
-      return rgb(0x8a8a88);
+      return label >= Label::rubble ? thing_colour(label) : rgb(0x8a8a88);
   }
 }
 

@@ -24,7 +24,7 @@ struct Span {
 Floor::Floor(const Mesh& mesh) : mesh_(mesh) {
   std::vector<std::uint32_t> floor;
   for (size_t f = 0; f < mesh.face.size(); ++f)
-    if (mesh.label.empty() || mesh.label[f] == Label::floor) floor.push_back(static_cast<std::uint32_t>(f));
+    if (mesh.label.empty() || is_ground(mesh.label[f])) floor.push_back(static_cast<std::uint32_t>(f));
   if (floor.empty()) return;
   low_ = mesh.corner(floor[0], 0).head<2>();
   Vec2 high = low_;

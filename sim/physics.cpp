@@ -177,7 +177,8 @@ struct Physics::Impl {
   std::vector<std::unique_ptr<btTypedConstraint>> joints;
   std::vector<std::unique_ptr<btRigidBody>> blocks;
   const Relief* relief;
-  std::vector<btPersistentManifold*> treads;  // (wheels) contacts with the relief
+  std::vector<std::array<std::uint32_t, 3>> solid;  // the mesh's faces where some are water; else empty
+  std::vector<btPersistentManifold*> treads;        // (wheels) contacts with the relief
 
   Impl(const Mesh& mesh_, const Vehicle& vehicle_, const Pose& X_WB, double step, const Relief* relief_,
        const std::vector<Loose>& loose)
@@ -201,13 +202,23 @@ struct Physics::Impl {
     world.removeCollisionObject(rock.get());
   }
 
+  // Wheels go through water: its faces shrink to a point, so that the others keep their numbers.
+  void drain() {
+    if (std::find(mesh.label.begin(), mesh.label.end(), Label::water) == mesh.label.end()) return;
+    solid = mesh.face;
+    for (size_t f = 0; f < solid.size(); ++f)
+      if (mesh.label[f] == Label::water) solid[f].fill(solid[f][0]);
+  }
+
   void add_rock() {
+    drain();
+    const auto& face = solid.empty() ? mesh.face : solid;
     const int faces = static_cast<int>(mesh.face.size());
     for (int first = 0; first < faces; first += part_faces) {
       btIndexedMesh part;
       part.m_numTriangles = std::min(part_faces, faces - first);
-      part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(mesh.face.data() + first);
-      part.m_triangleIndexStride = sizeof(mesh.face[0]);
+      part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(face.data() + first);
+      part.m_triangleIndexStride = sizeof(face[0]);
       part.m_numVertices = static_cast<int>(mesh.vertex.size());
       part.m_vertexBase = reinterpret_cast<const unsigned char*>(mesh.vertex.data());
       part.m_vertexStride = sizeof(mesh.vertex[0]);
@@ -301,7 +312,7 @@ struct Physics::Impl {
       if (!with_rock || std::max(m.getBody0()->getUserIndex(), m.getBody1()->getUserIndex()) != wheel_index) continue;
       for (int k = m.getNumContacts() - 1; k >= 0; --k) {
         const size_t face = face_of(m, m.getContactPoint(k));
-        if (face >= mesh.label.size() || mesh.label[face] == Label::floor) m.removeContactPoint(k);
+        if (face >= mesh.label.size() || is_ground(mesh.label[face])) m.removeContactPoint(k);
       }
     }
     const btVector3 x = frame->getWorldTransform().getBasis().getColumn(0);

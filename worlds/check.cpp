@@ -188,16 +188,26 @@ void PartsCheck::check_crossings(const Mesh& mesh, const std::vector<std::uint32
 
 void MeshTally::add(const Mesh& mesh, const Vec3& origin) {
   for (size_t f = 0; f < mesh.face.size(); ++f) {
-    six_volumes += (mesh.corner(f, 0) - origin).dot((mesh.corner(f, 1) - origin).cross(mesh.corner(f, 2) - origin));
+    const double six = (mesh.corner(f, 0) - origin).dot((mesh.corner(f, 1) - origin).cross(mesh.corner(f, 2) - origin));
+    const Label label = f < mesh.label.size() ? mesh.label[f] : Label::none;
+    six_volumes += six;
+    if (!is_object(label))
+      rock_six_volumes += six;
+    else if (f < mesh.part.size() && mesh.part[f] >= 0) {
+      const auto id = static_cast<size_t>(mesh.part[f]);
+      if (id >= body_six_volumes.size()) body_six_volumes.resize(id + 1, 0.0);
+      body_six_volumes[id] -= six;
+    }
     if (f < mesh.passage.size()) {
       passages = std::max(passages, mesh.passage[f] + 1);
       nameless += mesh.passage[f] < 0;
     }
     if (f >= mesh.part.size() || mesh.label.empty()) continue;
-    const bool level = mesh.label[f] == Label::floor || mesh.label[f] == Label::roof;
-    int& highest = level ? passages : pillars;
+    const bool thing = is_object(label) || label == Label::rubble;
+    const bool level = is_ground(label) || label == Label::roof;
+    int& highest = thing ? objects : level ? passages : pillars;
     highest = std::max(highest, mesh.part[f] + 1);
-    nameless += mesh.part[f] < (level ? 0 : -1);
+    nameless += mesh.part[f] < (thing || level ? 0 : -1);
   }
 }
 

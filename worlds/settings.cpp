@@ -97,6 +97,49 @@ Fields fields(RockSettings& s) {
   };
 }
 
+Fields fields(DecaySettings& s) {
+  return {
+      {"falls_per_100m", &s.falls_per_100m, "major roof falls in 100 m of passages; -1: by world.condition", -1, 10},
+      {"skins_per_100m", &s.skins_per_100m, "slabs off the roof in 100 m of passages; -1: by world.condition", -1, 20},
+      {"cleared_share", &s.cleared_share, "share of the major falls whose rubble was loaded out; -1: by condition", -1,
+       1},
+      {"fall_height_m", &s.fall_height_m, "median height of the cavities of major falls", 0.3, 4},
+      {"talus_m", &s.talus_m, "greatest height of what spalled from ribs, at their foot; -1: by condition", -1, 0.8},
+      {"may_cut", &s.may_cut, "whether what blocks passages may leave a mine without loops, or in two"},
+  };
+}
+
+Fields fields(FurnitureSettings& s) {
+  const auto share = [](const char* key, double* value, const char* what) {
+    return Field(key, value, std::string("share of the passages with ") + what + "; -1: by world.condition", -1, 1);
+  };
+  const auto dense = [](const char* key, double* value, const char* what) {
+    return Field(key, value, std::string(what) + " in 100 m of passages; -1: by world.condition", -1, 100);
+  };
+  return {
+      {"lane_m", &s.lane_m, "width about the centre line that is kept clear but for what blocks a passage", 0.5, 6},
+      share("post_share", &s.post_share, "rows of timber posts"),
+      {"post_spacing_m", &s.post_spacing_m, "from post to post", 0.5, 10},
+      share("crossbar_share", &s.crossbar_share, "crossbars on legs"),
+      {"crossbar_spacing_m", &s.crossbar_spacing_m, "from crossbar to crossbar", 0.8, 10},
+      dense("cribs_per_100m", &s.cribs_per_100m, "cribs"),
+      share("bolt_share", &s.bolt_share, "roof bolts"),
+      {"bolt_spacing_m", &s.bolt_spacing_m, "between bolts, along and across", 0.5, 5},
+      share("track_share", &s.track_share, "rails on ties"),
+      share("belt_share", &s.belt_share, "a belt conveyor, where they are wide enough"),
+      share("pipe_share", &s.pipe_share, "a pipe along a rib"),
+      share("cable_share", &s.cable_share, "a cable under the roof's edge"),
+      share("stopping_share", &s.stopping_share, "a block wall with a man door, of those that are no dead ends"),
+      dense("cars_per_100m", &s.cars_per_100m, "mine cars, which block their passage"),
+      dense("beams_per_100m", &s.beams_per_100m, "beams fallen across the way, which block it"),
+      dense("blocks_per_100m", &s.blocks_per_100m, "loose blocks beside the lane"),
+      dense("pools_per_100m", &s.pools_per_100m, "pools of water"),
+      {"pool_depth_m", &s.pool_depth_m, "greatest depth of a pool", 0.02, 1},
+      {"pool_reach_m", &s.pool_reach_m, "how far a pool reaches from its deepest place at most", 2, 200},
+      {"sludge_share", &s.sludge_share, "share of the floor under sludge; -1: by world.condition", -1, 1},
+  };
+}
+
 Fields fields(RoughnessSettings& s) {
   return {
       {"rms_m", &s.rms_m, "rms of the roughness", 0, 0.15},
@@ -129,6 +172,10 @@ Fields fields(WorldSettings& s) {
       {"roll_m", &s.roll_m, "rms of the floor's rolls about its plane", 0, 1.5},
       {"roll_min_m", &s.roll_min_m, "shortest wavelength of the rolls", 20, 1000},
       {"roll_max_m", &s.roll_max_m, "longest wavelength of the rolls", 20, 1000},
+      {"condition",
+       &s.condition,
+       "state of the mine: how much has come down and what stands in it, where keys do not say",
+       {"bare", "active", "research", "abandoned", "retreat"}},
       {"reflectivity", &s.reflectivity, "of rock dust: mean, diffuse, at 905 nm", 0.02, 1},
       {"reflectivity_sd", &s.reflectivity_sd, "its smooth variation", 0, 0.3},
       {"mesh_edge_m", &s.mesh_edge_m, "length of the mesh's edges", 0.05, 1},
@@ -138,6 +185,8 @@ Fields fields(WorldSettings& s) {
   append(all, "panel", fields(s.panel));
   append(all, "rooms", fields(s.rooms));
   append(all, "district", fields(s.district));
+  append(all, "decay", fields(s.decay));
+  append(all, "furniture", fields(s.furniture));
   append(all, "wear", fields(s.wear));
   append(all, "rock", fields(s.rock));
   append(all, "floor", fields(s.floor));

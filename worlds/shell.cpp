@@ -270,6 +270,7 @@ class Builder {
   // Vertices 0 .. n-1 are the floor's, n .. 2n-1 the roof's; those of the rims come first in each.
   void add_floor_and_roof(const PlanMesh& ground) {
     n_ = static_cast<std::uint32_t>(ground.vertex.size());
+    shell_.levels = ground.face.size();
     auto& vertex = shell_.mesh.vertex;
     vertex.resize(2 * size_t{n_});
     size_t bound = 0;
@@ -292,10 +293,26 @@ class Builder {
         grain);
     for (const auto& f : ground.face) {
       const int passage = passage_at(outline_, (ground.vertex[f[0]] + ground.vertex[f[1]] + ground.vertex[f[2]]) / 3);
-      add_face(f[0], f[2], f[1], Label::floor, passage, passage);
+      const auto [lies, fall] = terrain_.ground((ground.vertex[f[0]] + ground.vertex[f[1]] + ground.vertex[f[2]]) / 3);
+      add_face(f[0], f[2], f[1], lies, fall >= 0 ? fall : passage, passage);
+      if (fall >= 0) {
+        Shell::Heap& heap = shell_.heaps[fall];
+        heap.volume_m3 += rubble_over(f, ground);
+        for (std::uint32_t v : f) {
+          heap.low = heap.low.cwiseMin(vertex[v]);
+          heap.high = heap.high.cwiseMax(vertex[v]);
+        }
+      }
       add_face(n_ + f[0], n_ + f[1], n_ + f[2], Label::roof, passage, passage);
       volume_m3_[passage] += prism_m3(f[0], f[1], f[2]);
     }
+  }
+
+  double rubble_over(const std::array<std::uint32_t, 3>& f, const PlanMesh& ground) const {
+    const Vec2 &a = ground.vertex[f[0]], u = ground.vertex[f[1]] - a, w = ground.vertex[f[2]] - a;
+    double lies = 0;
+    for (std::uint32_t v : f) lies += terrain_.rubble_m(ground.vertex[v]) / 3;
+    return 0.5 * (u.x() * w.y() - u.y() * w.x()) * lies;
   }
 
   // Vertex of row r at column k of a run whose first column is rim point `first` and whose rows between begin at `base`.

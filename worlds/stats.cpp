@@ -51,6 +51,29 @@ void measure(const World& world, MineSamples& samples) {
   for (const Junction& j : world.junctions) ++samples.junctions[j.degree()];
   for (const Pillar& p : world.pillars) samples.pillar_m2.push_back(p.area_m2);
   samples.extraction.push_back(world.numbers.extraction_ratio);
+  double length = 0, blocked = 0;
+  for (const Passage& p : world.passages) {
+    length += p.length_m;
+    if (p.blocked) blocked += p.length_m;
+  }
+  std::map<Label, int> things;
+  for (const MineObject& o : world.objects) ++things[o.label];
+  for (const auto& [label, n] : things) samples.per_100m[label].push_back(100 * n / length);
+  const double bare = world.numbers.bare_m3;
+  samples.blocked_share.push_back(blocked / length);
+  samples.bodies_share.push_back(bare > 0 ? 1 - world.numbers.volume_m3 / bare : 0);
+}
+
+void append(MineSamples& all, const MineSamples& more) {
+  const auto join = [](std::vector<double>& to, const std::vector<double>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (auto list :
+       {&MineSamples::width_m, &MineSamples::height_m, &MineSamples::grade_percent, &MineSamples::length_m,
+        &MineSamples::pillar_m2, &MineSamples::extraction, &MineSamples::blocked_share, &MineSamples::bodies_share})
+    join(all.*list, more.*list);
+  for (const auto& [degree, n] : more.junctions) all.junctions[degree] += n;
+  for (const auto& [label, values] : more.per_100m) join(all.per_100m[label], values);
 }
 
 Spread spread_of(std::vector<double> values) {

@@ -46,7 +46,8 @@ Waves rough(const RoughnessSettings& r, double edge_m, std::uint64_t seed, std::
 
 }  // namespace
 
-Terrain::Terrain(const WorldSettings& s, const Vec2& middle, const Lattice& depth, std::uint64_t seed)
+Terrain::Terrain(const WorldSettings& s, const Vec2& middle, const Lattice& depth, std::uint64_t seed,
+                 std::vector<std::pair<int, Fall>> falls)
     : mean_height_(s.height_m),
       roll_amplitude_(s.roll_m * std::sqrt(2.0 / roll_count)),
       mean_reflectivity_(s.reflectivity),
@@ -69,6 +70,11 @@ Terrain::Terrain(const WorldSettings& s, const Vec2& middle, const Lattice& dept
       dust_(unit(s.rock.patch_m, seed, Draw::world_material, 1, false)),
       water_(unit(2 * s.rock.patch_m, seed, Draw::world_material, 2, false)),
       cleat_(unit(cleat_length_m, seed, Draw::world_roughness, 6, true)),
+      sludge_(unit(8, seed, Draw::world_decay, 0, true)),
+      talus_most_m_(std::max(0.0, s.decay.talus_m)),
+      sludge_share_(std::max(0.0, s.furniture.sludge_share)),
+      sludge_below_(quantile(sludge_share_)),
+      falls_(std::move(falls)),
       seed_(seed) {
   const double dip = 2 * pi * uniform(seed, Draw::world_roll, 0);
   grade_ = 0.01 * s.grade_percent * Vec2(std::cos(dip), std::sin(dip));
@@ -95,9 +101,51 @@ double Terrain::across(const Vec2& p) const {
   const double s = std::clamp(-depth_.at(p) / full_sag_m, 0.0, 1.0);
   return s * (2 - s);
 }
+// Cavities of falls that meet are one.
+double Terrain::cavity_m(const Vec2& p) const {
+  double height = 0;
+  for (const auto& [id, fall] : falls_)
+    if ((p - fall.middle).squaredNorm() <
+        fall.half_along_m * fall.half_along_m + fall.half_across_m * fall.half_across_m)
+      height = std::max(height, fall.cavity_m(p, depth_.at(p)));
+  return height;
+}
+double Terrain::rubble_m(const Vec2& p, int* fall) const {
+  double height = 0;
+  for (const auto& [id, f] : falls_) {
+    const double reach = f.reach_m();
+    if (f.heap_m <= 0 || (p - f.middle).squaredNorm() > reach * reach) continue;
+    const double here = f.rubble_m(p);
+    if (here <= height) continue;
+    height = here;
+    if (fall) *fall = id;
+  }
+  if (height <= 0) return 0;
+  return std::max(0.0, height + std::min(1.0, height / 0.4) * stones_m(p, seed_));
+}
+// A wedge at the rib's foot where it has spalled.
+double Terrain::talus_m(const Vec2& p) const {
+  if (talus_most_m_ <= 0) return 0;
+  constexpr double repose = 0.75;  // 37 degrees
+  const double behind = std::max(0.0, -depth_.at(p));
+  if (behind * repose >= talus_most_m_) return 0;
+  return std::max(0.0, talus_most_m_ * cover(slough_(p), slough_below_, 0.8) - repose * behind);
+}
+std::pair<Label, int> Terrain::ground(const Vec2& p) const {
+  constexpr double told_m = 0.04;
+  int fall = -1;
+  if (!falls_.empty() && rubble_m(p, &fall) > told_m) return {Label::rubble, fall};
+  if (talus_m(p) > told_m) return {Label::talus, -1};
+  if (sludge_share_ > 0 && sludge_(p) < sludge_below_) return {Label::sludge, -1};
+  return {Label::floor, -1};
+}
+
 double Terrain::floor_z(const Vec2& p) const {
   double z = seam_z(p) + floor_(p);
   if (wear_.heave_m > 0) z += wear_.heave_m * across(p) * smooth_step(0.5 - 0.5 * sag_(p));
+  z += talus_m(p);
+  const double rubble = falls_.empty() ? 0 : rubble_m(p);
+  if (rubble > 0) z = std::min(z + rubble, std::max(z, roof_z(p) - 0.25));  // the void is one, however full
   return z;
 }
 double Terrain::roof_z(const Vec2& p) const {
@@ -105,6 +153,7 @@ double Terrain::roof_z(const Vec2& p) const {
   if (wear_.sag_m > 0) z -= wear_.sag_m * across(p) * smooth_step(0.5 + 0.5 * sag_(p));
   // Steps that are as steep as two edges of the mesh.
   if (wear_.bedding_m > 0) z += wear_.bedding_m * smooth_step(0.5 + 4 * (bedding_(p) - 0.7));
+  if (!falls_.empty()) z += cavity_m(p);
   return z;
 }
 
@@ -139,7 +188,10 @@ Rock Terrain::rock(const Vec3& p, Label label) const {
   const double patch = patches_(p);
   const bool bare = rock_settings_.dust_share < 1;
   const double dust = bare ? cover(dust_(p), dust_below_, 0.6) : 1;
-  const bool floor = label == Label::floor, roof = label == Label::roof;
+  if (label == Label::sludge)
+    return {Material::mud, static_cast<float>(std::clamp(0.25 * (1 + patch / mean_reflectivity_), 0.02, 1.0)), 0.8f};
+  const bool broken = label == Label::rubble || label == Label::talus;  // fell when the dust was down
+  const bool floor = label == Label::floor, roof = label == Label::roof || label == Label::rubble;
   const Material under = floor                 ? Material::fireclay
                          : roof                ? Material::shale
                          : label == Label::cap ? Material::block
@@ -149,6 +201,10 @@ Rock Terrain::rock(const Vec3& p, Label label) const {
   if (rock_settings_.wet_share > 0) {
     // Water runs down: of the floor more is wet than of the ribs, of those more than of the roof.
     wet = cover(water_(p), wet_below_[floor ? 0 : roof ? 2 : 1], 0.8);
+  }
+  if (broken) {
+    const double seen = own * (1 + patch / mean_reflectivity_) * (1 - 0.5 * wet);
+    return {under, static_cast<float>(std::clamp(seen, 0.02, 1.0)), static_cast<float>(wet)};
   }
   const double dry = dust * (mean_reflectivity_ + patch) + (1 - dust) * own * (1 + patch / mean_reflectivity_);
   const double seen = dry * (1 - 0.5 * wet);  // wet rock reflects about half as much as dry

@@ -30,6 +30,7 @@ void check_ids(const World& truth, const MeshTally& mesh, Faults& faults) {
   };
   say(mesh.passages, truth.passages.size(), "passage");
   say(mesh.pillars, truth.pillars.size(), "pillar");
+  say(mesh.objects, truth.objects.size(), "object");
   if (mesh.nameless > 0) faults.push_back(std::to_string(mesh.nameless) + " faces name no passage or pillar");
 }
 
@@ -45,6 +46,24 @@ void check_areas(const World& world, Faults& faults) {
   expect_near(faults, "extraction ratio", world.numbers.extraction_ratio, floor / (floor + rock), 1e-9);
 }
 
+// Void and bodies make up the void of the rock alone, each body the volume that is told of it.
+void check_objects(const World& world, const MeshTally& mesh, Faults& faults) {
+  if (world.objects.empty()) return;
+  expect_near(faults, "volume of the rock's void alone", world.numbers.bare_m3, mesh.rock_six_volumes / 6, 1e-9);
+  double bodies = 0;
+  for (size_t i = 0; i < world.objects.size(); ++i) {
+    const MineObject& o = world.objects[i];
+    if (o.ground) continue;
+    bodies += o.volume_m3;
+    const double found = i < mesh.body_six_volumes.size() ? mesh.body_six_volumes[i] / 6 : 0;
+    // Summed about a far point: 1e-12 of the products of coordinates.
+    if (std::abs(found - o.volume_m3) > 1e-6 * o.volume_m3 + 1e-7)
+      faults.push_back("volume of object " + std::to_string(i) + " (" + label_name(o.label) + "): the truth says " +
+                       number(o.volume_m3) + ", the mesh " + number(found));
+  }
+  expect_near(faults, "void and bodies", world.numbers.volume_m3 + bodies, world.numbers.bare_m3, 1e-9);
+}
+
 }  // namespace
 
 std::vector<std::string> check_truth(const World& world, const MeshTally& mesh) {
@@ -55,6 +74,7 @@ std::vector<std::string> check_truth(const World& world, const MeshTally& mesh) 
   for (const Passage& p : world.passages) sum += p.volume_m3;
   expect_near(faults, "sum of the passages' volumes", sum, volume, 1e-9);
   check_ids(world, mesh, faults);
+  check_objects(world, mesh, faults);
   check_areas(world, faults);
   const int loops = static_cast<int>(world.passages.size()) - static_cast<int>(world.junctions.size()) + 1;
   if (world.numbers.loops != loops)

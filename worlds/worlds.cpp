@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "worlds/drift.h"
+#include "worlds/furniture.h"
 #include "worlds/outline.h"
 #include "worlds/plan.h"
 #include "worlds/polygons.h"
@@ -227,7 +228,56 @@ struct Layout {
   MinePlan plan;
   Workings workings;
   Tiling tiling;
+  Decay decay;
 };
+
+bool furnished(const FurnitureSettings& f) {
+  for (double some :
+       {f.post_share, f.crossbar_share, f.cribs_per_100m, f.bolt_share, f.track_share, f.belt_share, f.pipe_share,
+        f.cable_share, f.stopping_share, f.cars_per_100m, f.beams_per_100m, f.blocks_per_100m, f.pools_per_100m})
+    if (some > 0) return true;
+  return false;
+}
+
+// The falls that reach into a frame, with the ids of their rubble among the objects; -1 where it was loaded out.
+std::vector<std::pair<int, Fall>> falls_in(const std::vector<Fall>& falls, const Frame2& frame) {
+  std::vector<std::pair<int, Fall>> near;
+  int id = 0;
+  for (const Fall& f : falls) {
+    const int own = f.heap_m > 0 ? id++ : -1;
+    if (frame.meets({f.middle, f.middle}, f.reach_m() + 1)) near.emplace_back(own, f);
+  }
+  return near;
+}
+
+// The rubble of the falls, as objects whose sizes are to follow.
+std::vector<MineObject> heaps_of(const std::vector<Fall>& falls) {
+  std::vector<MineObject> heaps;
+  for (const Fall& f : falls)
+    if (f.heap_m > 0)
+      heaps.push_back({Label::rubble, f.passage, {f.middle.x(), f.middle.y(), 0}, Vec3::Zero(), 0, 0, true, true});
+  return heaps;
+}
+
+// A heap grows by what of it lies in another tile.
+void grow(MineObject& heap, const Shell::Heap& more) {
+  Vec3 low = more.low, high = more.high;
+  if (heap.volume_m3 > 0) {
+    low = low.cwiseMin(heap.middle_W - 0.5 * heap.size_m);
+    high = high.cwiseMax(heap.middle_W + 0.5 * heap.size_m);
+  }
+  heap.middle_W = 0.5 * (low + high);
+  heap.size_m = high - low;
+  heap.volume_m3 += more.volume_m3;
+}
+
+// Those that lie in a tile or reach into it.
+std::vector<size_t> passages_of(const Tiling& tiling, size_t t) {
+  std::vector<size_t> some;
+  for (size_t p = 0; p < tiling.tiles_of.size(); ++p)
+    if (tiling.tiles_of[p].first == t || tiling.tiles_of[p].second == t) some.push_back(p);
+  return some;
+}
 
 Layout lay_out(const WorldSettings& s, std::uint64_t seed, const Progress& progress) {
   const bool drawn = s.kind == "plan" && names_polygons(s.plan);
@@ -244,21 +294,25 @@ Layout lay_out(const WorldSettings& s, std::uint64_t seed, const Progress& progr
   const std::vector<Loop> ribs = workings.ribs();
   check_pillars(s, skeleton.plan, workings, ribs.size() - 1);
   Tiling tiling = tile_plan(skeleton.plan, workings, ribs, s.tile_m, s.mesh_edge_m);
+  Decay decay = draw_decay(s, skeleton.plan, workings, seed);
   progress("laying out the mine", 1, 1);
-  return {std::move(skeleton.plan), std::move(workings), std::move(tiling)};
+  return {std::move(skeleton.plan), std::move(workings), std::move(tiling), std::move(decay)};
 }
 
 }  // namespace
 
-World make_parts(const WorldSettings& s, std::uint64_t seed, const std::function<void(MinePart&&)>& take,
+World make_parts(const WorldSettings& given, std::uint64_t seed, const std::function<void(MinePart&&)>& take,
                  const Progress& progress) {
+  const WorldSettings s = in_condition(given);
   const Layout layout = lay_out(s, seed, progress);
-  const auto& [plan, workings, tiling] = layout;
+  const auto& [plan, workings, tiling, decay] = layout;
   const std::vector<CutEnd> ends = cut_ends(plan, workings.drifts());
   const Vec2 middle = middle_of(plan);
   World world;
   world.name = s.kind == "plan" ? s.plan : s.kind;
   world.passages.resize(plan.passages.size());
+  world.objects = heaps_of(decay.falls);
+  std::vector<char> blocked = decay.blocked;
   std::vector<double> volume_m3(plan.passages.size(), 0.0);
   std::vector<Loop> mid_height;
   for (const Loop& rib : tiling.ribs) mid_height.emplace_back(rib.size());
@@ -271,10 +325,21 @@ World make_parts(const WorldSettings& s, std::uint64_t seed, const std::function
     for (size_t p : tile.passages)
       for (const Vec2& q : workings.drifts()[p].line) seen.add(q);
     const Outline outline = tiling.tiles.size() == 1 ? workings.whole() : workings.window(seen);
-    const Terrain terrain(s, middle, outline.depth, seed);
+    const Terrain terrain(s, middle, outline.depth, seed, falls_in(decay.falls, seen));
     const Faces faces = faces_in(tile.frame, ends, workings.walls());
     Shell shell = make_shell({tiling, workings, faces, s.mesh_edge_m, rows_of(s.height_m, s.mesh_edge_m), seed}, tile,
                              outline, terrain, volume_m3, mid_height);
+    for (const auto& [fall, heap] : shell.heaps) grow(world.objects[static_cast<size_t>(fall)], heap);
+    if (furnished(s.furniture) && shell.levels > 0) {
+      Space space(shell.mesh, shell.levels);
+      furnish({s, plan, workings.drifts(), decay, seed}, passages_of(tiling, t), space);
+      space.append_to(shell.mesh, static_cast<int>(world.objects.size()));
+      for (const MineObject& o : space.objects()) {
+        volume_m3[static_cast<size_t>(o.passage)] -= o.volume_m3;
+        if (o.blocks) blocked[static_cast<size_t>(o.passage)] = 1;
+        world.objects.push_back(o);
+      }
+    }
     for (size_t p : tile.passages) world.passages[p] = passage_of(plan.passages[p], workings.drifts()[p], terrain);
     if (t == 0) origin = shell.mesh.vertex.front();
     tally.add(shell.mesh, origin);
@@ -284,8 +349,12 @@ World make_parts(const WorldSettings& s, std::uint64_t seed, const std::function
     take(std::move(part));
     progress("raising the mine", static_cast<double>(t + 1), static_cast<double>(tiling.tiles.size()));
   }
-  for (size_t i = 0; i < volume_m3.size(); ++i) world.passages[i].volume_m3 = volume_m3[i];
+  for (size_t i = 0; i < volume_m3.size(); ++i) {
+    world.passages[i].volume_m3 = volume_m3[i];
+    world.passages[i].blocked = blocked[i] != 0;
+  }
   world.numbers.volume_m3 = tally.six_volumes / 6;
+  if (!world.objects.empty()) world.numbers.bare_m3 = tally.rock_six_volumes / 6;
   add_junctions(plan, world);
   add_numbers(std::move(mid_height), world);
   return world;

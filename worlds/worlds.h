@@ -109,6 +109,34 @@ struct RockSettings {
   double patch_m = 3;      // size of the patches of dust and water
 };
 
+/// What came down. Below 0: as world.condition has it.
+struct DecaySettings {
+  double falls_per_100m = -1;  // of passages: major falls, most at junctions
+  double skins_per_100m = -1;  // slabs that dropped off the roof
+  double cleared_share = -1;   // of the major falls whose rubble was loaded out
+  double fall_height_m = 1.8;  // median height of their cavities
+  double talus_m = -1;         // height of what spalled from the ribs, at their foot
+  bool may_cut = false;        // falls and what stands across may leave a mine without loops
+};
+
+/// What was built in. Shares are those of the passages that have it; below 0: as world.condition has it.
+struct FurnitureSettings {
+  double lane_m = 1.6;  // about the centre line, kept clear but for what blocks a passage
+  double post_share = -1, post_spacing_m = 1.4;
+  double crossbar_share = -1, crossbar_spacing_m = 1.4;
+  double cribs_per_100m = -1;
+  double bolt_share = -1, bolt_spacing_m = 1.2;
+  double track_share = -1;
+  double belt_share = -1;
+  double pipe_share = -1, cable_share = -1;
+  double stopping_share = -1;  // of the passages that are no dead ends: a block wall with a man door
+  double cars_per_100m = -1;   // standing on their track
+  double beams_per_100m = -1;  // fallen across the way
+  double blocks_per_100m = -1;
+  double pools_per_100m = -1, pool_depth_m = 0.25, pool_reach_m = 15;
+  double sludge_share = -1;  // of the floor
+};
+
 /// A mine before chance: the keys of [world].
 struct WorldSettings {
   std::string kind = "plan";      // plan | panel | rooms | district
@@ -135,6 +163,9 @@ struct WorldSettings {
   double roll_min_m = 40, roll_max_m = 150;  // their wavelengths
   RoughnessSettings floor{0.02, 0.5}, roof{0.02, 1.0}, rib{0.055, 0.55};
 
+  std::string condition = "bare";  // bare | active | research | abandoned | retreat
+  DecaySettings decay;
+  FurnitureSettings furniture;
   WearSettings wear;
   RockSettings rock;
   double reflectivity = 0.45;  // diffuse, at 905 nm; rock-dusted
@@ -205,9 +236,11 @@ WorldCheck check_world(const World& world);
 
 /// What a mesh tells of itself that its mine's truth tells as well.
 struct MeshTally {
-  double six_volumes = 0;         // seen from a point that is the same for all faces
-  int passages = 0, pillars = 0;  // one more than the highest id that a face names
-  size_t nameless = 0;            // faces that name no passage, floor and roof none as their part
+  double six_volumes = 0;                      // seen from a point that is the same for all faces
+  double rock_six_volumes = 0;                 // of the rock's faces alone: the bodies in the void filled in
+  std::vector<double> body_six_volumes = {};   // (objects) of the faces of each body, > 0
+  int passages = 0, pillars = 0, objects = 0;  // one more than the highest id that a face names
+  size_t nameless = 0;                         // faces that name no passage, floor and roof none as their part
 
   void add(const Mesh& mesh, const Vec3& origin);
 };

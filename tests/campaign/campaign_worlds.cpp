@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Makes every bundled mine from many seeds and asks of each whether it is sound, its truth fits and it can be driven.
-//   campaign_worlds FIRST COUNT [FILE [EDGE_M]]   seeds FIRST .. FIRST + COUNT - 1 of each scenario
+//   campaign_worlds FIRST COUNT [FILE [EDGE_M [CONDITION]]]   seeds FIRST .. FIRST + COUNT - 1 of each scenario
+// CONDITION: bare (as the scenarios are), or one of world.condition with everything that it brings, and more of it.
 // FILE gets a line a mine, "scenario seed triangles fault" (fault: - where there is none). Mines that it tells already
 // are not made again: a campaign that was stopped goes on. Exit code 1: a mine has a fault.
 #include "base/bundled.h"
@@ -70,17 +71,23 @@ std::map<std::pair<std::string, unsigned long long>, Verdict> told_by(const std:
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: campaign_worlds FIRST COUNT [FILE [EDGE_M]]\n");
+    std::fprintf(stderr, "usage: campaign_worlds FIRST COUNT [FILE [EDGE_M [CONDITION]]]\n");
     return 2;
   }
   const auto first = std::strtoull(argv[1], nullptr, 10), count = std::strtoull(argv[2], nullptr, 10);
   const std::string file = argc > 3 ? argv[3] : "/dev/null", edge = argc > 4 ? argv[4] : "0.3";
+  std::vector<std::string> assignments{"world.mesh_edge_m=" + edge};
+  if (argc > 5)
+    assignments.insert(assignments.end(), {std::string("world.condition=") + argv[5], "world.furniture.bolt_share=0.5",
+                                           "world.furniture.belt_share=0.5", "world.furniture.cribs_per_100m=2",
+                                           "world.furniture.stopping_share=0.2", "world.furniture.cars_per_100m=0.5",
+                                           "world.furniture.beams_per_100m=0.5", "world.furniture.pools_per_100m=2"});
   auto told = told_by(file);
   std::ofstream out(file, std::ios::app);
   for (auto seed = first; seed < first + count; ++seed) {
     for (const std::string& name : bundled_names("cli/scenarios")) {
       if (told.contains({name, seed})) continue;
-      const Verdict v = told[{name, seed}] = verdict_of(load_scenario(name, {"world.mesh_edge_m=" + edge}), seed);
+      const Verdict v = told[{name, seed}] = verdict_of(load_scenario(name, assignments), seed);
       out << name << ' ' << seed << ' ' << v.triangles << ' ' << v.fault << std::endl;
     }
   }

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
+#include "rays/caster.h"
+#include "worlds/decay.h"
+#include "worlds/solid.h"
+#include "worlds/space.h"
+#include "worlds/worlds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <set>
+
+namespace adit {
+namespace {
+
+// A short panel with everything in it.
+WorldSettings full(double edge_m = 0.35) {
+  WorldSettings s;
+  s.kind = "panel";
+  s.panel.crosscuts = 3;
+  s.panel.width_m = 5;
+  s.mesh_edge_m = edge_m;
+  s.condition = "abandoned";
+  FurnitureSettings& f = s.furniture;
+  f.post_share = f.crossbar_share = 0.5;
+  f.bolt_share = 0.4;
+  f.belt_share = f.track_share = f.pipe_share = f.cable_share = 0.7;
+  f.cribs_per_100m = f.pools_per_100m = 4;
+  f.stopping_share = f.cars_per_100m = f.beams_per_100m = 0.5;
+  return s;
+}
+
+// Two levels 2 m apart over the unit square's four triangles, and sides: a room of 8 m x 8 m.
+Mesh room() {
+  Mesh m;
+  for (double z : {0.0, 2.0})
+    for (const Vec2& p : {Vec2(-4, -4), Vec2(4, -4), Vec2(4, 4), Vec2(-4, 4), Vec2(0.1, 0.2)})
+      m.vertex.emplace_back(p.x(), p.y(), z);
+  m.vertex[4].z() = 0.3;  // a hump
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    const std::uint32_t a = k, b = (k + 1) % 4;
+    m.face.push_back({a, 4, b});
+    m.face.push_back({5 + a, 5 + b, 9});
+    m.label.insert(m.label.end(), {Label::floor, Label::roof});
+  }
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    const std::uint32_t a = k, b = (k + 1) % 4;
+    m.face.push_back({a, b, 5 + b});
+    m.face.push_back({a, 5 + b, 5 + a});
+    m.label.insert(m.label.end(), 2, Label::rib);
+  }
+  return m;
+}
+
+TEST(Solid, LoftsAndTubesAreClosedAndHaveTheirVolumes) {
+  const Solid b = box(Pose::Identity(), {1, 2, 0.5});
+  EXPECT_TRUE(b.closed());
+  EXPECT_NEAR(b.volume_m3(), 8, 1e-12);
+  const Solid t = tube_along({Vec3(0, 0, 0), Vec3(3, 0, 0)}, 0.1, 12);
+  EXPECT_TRUE(t.closed());
+  EXPECT_NEAR(t.volume_m3(), 3 * 6 * 0.01 * std::sin(std::numbers::pi / 6), 1e-12);  // a prism of 12 sides
+}
+
+TEST(Space, AColumnFollowsFloorAndRoofAndLeavesAMillimetre) {
+  const Mesh rock = room();
+  ASSERT_EQ(open_edges(rock), 0u);
+  ASSERT_GT(enclosed_volume(rock), 0);
+  const Space space(rock, 4);
+  const auto patch = space.patch(rectangle({0.3, 0.1}, {1, 0}, 0.5, 0.5));
+  ASSERT_TRUE(patch);
+  const auto c = column(
+      *patch, [](const LevelPoint& v) { return v.floor_z + Space::gap_m; },
+      [](const LevelPoint& v) { return v.roof_z - Space::gap_m; });
+  ASSERT_TRUE(c);
+  EXPECT_TRUE(c->closed());
+  // The floor under it is a pyramid's part: its integral by midpoints of a fine grid.
+  double under = 0;
+  constexpr int n = 400;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) under += space.level({-0.2 + (i + 0.5) / n, -0.4 + (j + 0.5) / n})->floor_z / (n * n);
+  EXPECT_NEAR(c->volume_m3(), 2 - 2 * Space::gap_m - under, 1e-6);
+}
+
+TEST(Space, APatchBeyondTheRibsIsNone) {
+  const Mesh rock = room();
+  const Space space(rock, 4);
+  EXPECT_FALSE(space.patch(rectangle({3.8, 0}, {1, 0}, 0.5, 0.5)));
+  EXPECT_TRUE(space.patch(rectangle({3.4, 0}, {1, 0}, 0.5, 0.5)));
+}
+
+TEST(Space, WhatTouchesRockOrABodyOrLiesWithinOneIsRefused) {
+  const Mesh rock = room();
+  Space space(rock, 4);
+  const auto at = [](const Vec3& p, double half) {
+    return std::vector<Solid>{box(Pose(Eigen::Translation3d(p)), Vec3::Constant(half))};
+  };
+  EXPECT_TRUE(space.put(Label::block, 0, at({1, 1, 1}, 0.3), 0));
+  EXPECT_FALSE(space.put(Label::block, 0, at({1.5, 1, 1}, 0.3), 0));   // crosses it
+  EXPECT_FALSE(space.put(Label::block, 0, at({1, 1, 1}, 0.1), 0));     // within it
+  EXPECT_FALSE(space.put(Label::block, 0, at({1, 1, 1}, 0.6), 0));     // round it
+  EXPECT_FALSE(space.put(Label::block, 0, at({-2, 0, 0.1}, 0.3), 0));  // in the floor
+  EXPECT_FALSE(space.put(Label::block, 0, at({9, 0, 1}, 0.3), 0));     // in the rock as a whole
+  EXPECT_TRUE(space.put(Label::block, 0, at({-2, 0, 1}, 0.3), 0));
+  ASSERT_EQ(space.objects().size(), 2u);
+  EXPECT_NEAR(space.objects()[0].volume_m3, 0.216, 1e-12);
+}
+
+TEST(Furniture, EverySeedIsSoundAndVoidAndBodiesMakeUpTheBareVoid) {
+  std::set<Label> seen;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const World world = make_world(full(), seed);
+    const WorldCheck check = check_world(world);
+    EXPECT_TRUE(check.ok()) << "seed " << seed << ": " << check.what();
+    const auto faults = check_truth(world);
+    EXPECT_TRUE(faults.empty()) << "seed " << seed << ": " << faults.front();
+    double bodies = 0;
+    for (const MineObject& o : world.objects) {
+      seen.insert(o.label);
+      if (!o.ground) bodies += o.volume_m3;
+    }
+    EXPECT_NEAR(world.numbers.volume_m3 + bodies, world.numbers.bare_m3, 1e-9 * world.numbers.bare_m3)
+        << "seed " << seed;
+  }
+  for (Label label : {Label::post, Label::crossbar, Label::crib, Label::bolt, Label::rail, Label::tie, Label::belt,
+                      Label::pipe, Label::cable, Label::water, Label::block})
+    EXPECT_TRUE(seen.contains(label)) << label_name(label);
+}
+
+TEST(Furniture, ATruthWithAWrongVolumeIsFound) {
+  World world = make_world(full(), 1);
+  const auto body =
+      std::find_if(world.objects.begin(), world.objects.end(), [](const MineObject& o) { return !o.ground; });
+  ASSERT_NE(body, world.objects.end());
+  body->volume_m3 *= 1.01;
+  EXPECT_FALSE(check_truth(world).empty());
+}
+
+// A tube as wide as the lane, along the centre line of every passage that is open.
+TEST(Furniture, TheLaneOfAnOpenPassageIsClear) {
+  const WorldSettings s = full();
+  const World world = make_world(s, 2);
+  const Caster caster(world.mesh);
+  size_t looked = 0;
+  for (const Passage& p : world.passages) {
+    if (p.blocked) continue;
+    for (size_t i = 4; i + 4 < p.centre_line.size(); ++i) {
+      const auto near = caster.closest(p.centre_line[i] + Vec3(0, 0, 0.9), 0.45 * s.furniture.lane_m);
+      ++looked;
+      if (!near) continue;
+      const Label met = world.mesh.label[static_cast<size_t>(near->face)];
+      EXPECT_FALSE(met >= Label::post && met != Label::crossbar && met != Label::bolt) << label_name(met);
+    }
+  }
+  EXPECT_GT(looked, 20u);
+}
+
+TEST(Furniture, TilesGiveSoundPartsToo) {
+  WorldSettings s = full(0.4);
+  s.tile_m = 60;
+  PartsCheck check;
+  size_t parts = 0;
+  const World world = make_parts(s, 3, [&](MinePart&& part) { check.add(part), ++parts; });
+  EXPECT_GT(parts, 1u);
+  EXPECT_TRUE(check.finish().ok()) << check.finish().what();
+  const auto faults = check_truth(world, check.tally());
+  EXPECT_TRUE(faults.empty()) << faults.front();
+}
+
+TEST(Furniture, ABareMineHasNoObjectsAndItsVolumeNeedsNoOther) {
+  WorldSettings s = full(0.5);
+  s.condition = "bare";
+  s.furniture = {};
+  const World world = make_world(s, 1);
+  EXPECT_TRUE(world.objects.empty());
+  EXPECT_EQ(world.numbers.bare_m3, 0);
+}
+
+TEST(Decay, UnlessItMayCutSomeLoopIsLeft) {
+  WorldSettings s = full(0.5);
+  s.furniture = {};
+  s.decay.falls_per_100m = 5;
+  s.decay.cleared_share = 0;
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    const World world = make_world(s, seed);
+    EXPECT_GT(std::count_if(world.passages.begin(), world.passages.end(), [](const Passage& p) { return p.blocked; }),
+              0)
+        << seed;
+    EXPECT_GT(plan_route(world, {}, seed).length_m, 0) << seed;
+  }
+  s.decay.may_cut = true;
+  s.furniture.stopping_share = 1;
+  const World cut = make_world(s, 1);
+  EXPECT_THROW(plan_route(cut, {}, 1), Error);
+}
+
+TEST(Decay, RubbleLiesLooserThanItWasAndNoSteeperThanItsRepose) {
+  Fall f{};
+  f.along = {1, 0};
+  f.half_along_m = 4;
+  f.half_across_m = 2;
+  f.heap_m = 1.5;
+  f.repose = std::tan(37 * std::numbers::pi / 180);
+  for (double x = -6; x < 6; x += 0.37)
+    for (double y = -4; y < 4; y += 0.41) {
+      const double h = f.rubble_m({x, y});
+      EXPECT_LE(std::hypot(f.rubble_m({x + 1e-4, y}) - h, f.rubble_m({x, y + 1e-4}) - h) / 1e-4, f.repose + 1e-6);
+    }
+  EXPECT_EQ(f.rubble_m({0, 0}), 1.5);
+  EXPECT_EQ(f.rubble_m({0, 1.5 / f.repose + 0.01}), 0);
+}
+
+TEST(Condition, WhatIsSetIsKeptAndTheRestFollowsTheCondition) {
+  WorldSettings s;
+  s.condition = "abandoned";
+  s.furniture.post_share = 0;
+  s.wear.slough_m = 0.7;
+  const WorldSettings d = in_condition(s);
+  EXPECT_EQ(d.furniture.post_share, 0);
+  EXPECT_EQ(d.wear.slough_m, 0.7);
+  EXPECT_GT(d.furniture.cribs_per_100m, 0);
+  EXPECT_GT(d.decay.falls_per_100m + d.decay.skins_per_100m, 1);  // 1-3 in 100 m where a mine is left to itself
+  EXPECT_LT(d.decay.falls_per_100m + d.decay.skins_per_100m, 3);
+}
+
+}  // namespace
+}  // namespace adit

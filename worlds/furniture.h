@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "worlds/decay.h"
+#include "worlds/outline.h"
+#include "worlds/plan.h"
+#include "worlds/space.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace adit {
+
+/// What furniture is placed by: a mine's layout, its settings with nothing left to the condition, its chance.
+struct FurniturePlan {
+  const WorldSettings& settings;
+  const MinePlan& plan;
+  const std::vector<Drift>& drifts;
+  const Decay& decay;
+  std::uint64_t seed;
+};
+
+/// Fits out the part of a mine that a space shows: of the passages named, what lies wholly in it. What has no room is left
+/// out. Every thing has its own random address, so that tiles do not matter but for what stands across their cuts.
+void furnish(const FurniturePlan& plan, const std::vector<size_t>& passages, Space& space);
+
+}  // namespace adit
