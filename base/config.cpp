@@ -154,6 +154,23 @@ struct Setter {
   }
 };
 
+// TOML of a value, empty for what settings do not have.
+std::string text_of(const toml::node& node) {
+  if (const auto v = node.value_exact<bool>()) return *v ? "true" : "false";
+  if (const auto v = node.value_exact<std::int64_t>()) return std::to_string(*v);
+  if (const auto v = node.value_exact<double>()) return real(*v);
+  if (const auto v = node.value_exact<std::string>()) return in_quotes(*v);
+  const toml::array* items = node.as_array();
+  if (!items) return "";
+  std::string text;
+  for (const toml::node& item : *items) {
+    const std::string one = text_of(item);
+    if (one.empty()) return "";
+    text += (text.empty() ? "" : ", ") + one;
+  }
+  return "[" + text + "]";
+}
+
 bool is_table_array(const toml::node& node) {
   const toml::array* a = node.as_array();
   return a && !a->empty() && a->is_homogeneous(toml::node_type::table);
@@ -257,6 +274,19 @@ std::vector<Document> Document::tables(const std::string& key) const {
 
 bool Document::has(const std::string& key) const {
   return static_cast<bool>(impl_->table->at_path(key));
+}
+
+std::vector<std::string> Document::texts(const std::string& key) const {
+  std::vector<std::string> texts;
+  const toml::node* node = impl_->table->at_path(key).node();
+  if (!node) return texts;
+  if (!node->is_array()) fail(key, "must be a list in [ ]");
+  for (const toml::node& item : *node->as_array()) {
+    const std::string text = text_of(item);
+    if (text.empty()) fail(key, "may hold numbers, strings, true, false and lists of them");
+    texts.push_back(text);
+  }
+  return texts;
 }
 
 void Document::fail(const std::string& key, const std::string& what) const {

@@ -57,6 +57,9 @@ class Document {
   /// The tables of an array of tables ([[laser]]), in order, each a document of its own; empty where there is none.
   std::vector<Document> tables(const std::string& key) const;
   bool has(const std::string& key) const;
+  /// The items of a list of anything as text that set_field reads; empty where there is no such key. Error for what is no
+  /// list, or holds tables.
+  std::vector<std::string> texts(const std::string& key) const;
   /// Error at the line of a key, for checks that span several fields.
   [[noreturn]] void fail(const std::string& key, const std::string& what) const;
 

@@ -74,10 +74,13 @@ void parallel_chunks(size_t n, size_t grain, const std::function<void(size_t, si
         },
         tbb::simple_partitioner());
   };
+  // A thread that waits for a loop within a loop helps with that loop alone: else it might begin another turn of the outer
+  // one, and hold two at a time.
+  const auto apart = [&] { depth > 0 ? tbb::this_task_arena::isolate(run) : run(); };
   if (crew().arena) {
-    crew().arena->execute(run);
+    crew().arena->execute(apart);
   } else {
-    run();
+    apart();
   }
 }
 

@@ -41,6 +41,7 @@ enum class Draw : std::uint32_t {
   world_decay,
   world_furniture,
   set_value,
+  study_sample,
 };
 
 /// Random numbers have addresses, not an order: the same (seed, draw, i, j) always gives the same number.

@@ -28,6 +28,7 @@ HOMES = {
     r"hdf5\.h|H5": ["base/h5.cpp"],
     r"zlib\.h": ["base/h5.cpp"],
     r"bzlib\.h|lz4": ["base/bag_format.cpp"],
+    r"sqlite3\.h": ["base/sqlite.cpp"],
     r"toml\+\+/": ["base/config.cpp"],
     r"tiny_gltf": ["base/mesh_glb.cpp"],
     r"tbb/|oneapi/": ["base/parallel.cpp"],

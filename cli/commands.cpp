@@ -9,6 +9,7 @@
 #include "cli/scores.h"
 #include "cli/set_command.h"
 #include "cli/stages.h"
+#include "cli/study_file.h"
 #include "eval/compare.h"
 #include "eval/explain.h"
 #include "eval/render.h"
@@ -19,6 +20,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
 namespace adit {
 namespace {
@@ -249,6 +251,7 @@ int render_command(const std::string& out, const std::string& view, const Common
 
 int list_command(const std::string& what, Console& console) {
   const std::vector<std::pair<std::string, std::string>> folders{{"scenarios", "cli/scenarios"},
+                                                                 {"studies", "cli/studies"},
                                                                  {"vehicles", "sim/vehicles"},
                                                                  {"rigs", "sensors/rigs"},
                                                                  {"lasers", "sensors/lasers"}};
@@ -257,13 +260,15 @@ int list_command(const std::string& what, Console& console) {
     if (what.empty() || what == kind) all[kind] = bundled_names(folder);
   if (what.empty() || what == "views") all["views"] = view_names();
   if (what.empty() || what == "metrics") all["metrics"] = defined_metrics();
-  if (all.empty()) throw Error("list " + what + ": there are scenarios, vehicles, rigs, lasers, views and metrics");
+  if (all.empty())
+    throw Error("list " + what + ": there are scenarios, studies, vehicles, rigs, lasers, views and metrics");
   for (const auto& [kind, names] : all.items()) {
     console.result(kind);
     for (const auto& name : names) {
       std::string line = "  " + name.get<std::string>();
       if (kind == "scenarios")
         line += std::string(std::max<size_t>(1, 20 - line.size()), ' ') + load_scenario(name).about;
+      if (kind == "studies") line += std::string(std::max<size_t>(1, 20 - line.size()), ' ') + load_study(name).about;
       console.result(line);
     }
   }
@@ -272,10 +277,14 @@ int list_command(const std::string& what, Console& console) {
 }
 
 int help_command(const std::string& topic, Console& console) {
-  if (topic != "scenario" && topic != "set") throw Error("help " + topic + ": the topics are: scenario, set");
   Scenario s;
   MineSet set;
-  for (const Field& f : topic == "set" ? fields(set) : fields(s)) {
+  Study study;
+  const std::map<std::string, Fields> topics = {
+      {"scenario", fields(s)}, {"set", fields(set)}, {"study", study_fields(study)}};
+  const auto of_topic = topics.find(topic);
+  if (of_topic == topics.end()) throw Error("help " + topic + ": the topics are: scenario, set, study");
+  for (const Field& f : of_topic->second) {
     const std::string value = to_toml({f});
     const std::string shown = value.substr(value.find(" = ") + 3);
     std::string line = f.key + " = " + shown.substr(0, shown.find('\n'));

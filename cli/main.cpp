@@ -6,6 +6,7 @@
 #include "cli/rig_command.h"
 #include "cli/set_command.h"
 #include "cli/stats_command.h"
+#include "cli/study_command.h"
 
 #include <CLI/CLI.hpp>
 
@@ -23,7 +24,7 @@ struct Words {
   adit::Common common;
   bool quiet = false, json = false;
   int threads = 0, every = 1;
-  std::string first, second, world, truth, check, stats;
+  std::string first, second, world, truth, check, stats, shard;
   adit::ScoreInput score;
   std::vector<std::string> outs;
 };
@@ -54,6 +55,7 @@ int dispatch(CLI::App& app, const Words& w) {
   if (app.got_subcommand("render")) return render_command(w.first, w.second, w.common, console);
   if (app.got_subcommand("convert")) return convert_command(w.first, w.second, w.truth, w.every, console);
   if (app.got_subcommand("rig")) return rig_command(w.first, w.common, console);
+  if (app.got_subcommand("study")) return study_command(w.first, w.second, w.shard, w.common, console);
   if (app.got_subcommand("list")) return list_command(w.first, console);
   return help_command(w.first, console);
 }
@@ -132,8 +134,13 @@ void add_commands(CLI::App& app, Words& w) {
   CLI::App* rig = app.add_subcommand("rig", "pictures of a rig with its fans in a passage");
   rig->add_option("rig", w.first, "bundled name or TOML file")->required();
   add_common(rig, w, false);
+  CLI::App* study = app.add_subcommand("study", "many runs with a question: a sweep of settings, a search for mounts");
+  study->add_option("study", w.first, "bundled name or TOML file; or 'merge' and the folder of one")->required();
+  study->add_option("folder", w.second, "of 'merge'");
+  study->add_option("--shard", w.shard, "I/N: only this part of the runs; 'adit study merge OUT' joins them");
+  add_common(study, w, true);
   CLI::App* list = app.add_subcommand("list", "what is bundled");
-  list->add_option("what", w.first, "scenarios, vehicles, rigs, lasers, views or metrics");
+  list->add_option("what", w.first, "scenarios, studies, vehicles, rigs, lasers, views or metrics");
   add_common(list, w, false);
   CLI::App* help = app.add_subcommand("help", "this text, or a topic");
   help->add_option("topic", w.first, "scenario or set");

@@ -2,7 +2,6 @@
 #include "cli/rig_command.h"
 
 #include "cli/scenario.h"
-#include "eval/rig_picture.h"
 
 #include <nlohmann/json.hpp>
 
@@ -37,34 +36,41 @@ Drive stand_at(const Pose& X_WB) {
 
 }  // namespace
 
-int rig_command(const std::string& name, const Common& common, Console& console) {
-  Scenario s;
-  for (const std::string& a : common.assignments) set_field(fields(s), a);
-  const Rig rig = load_rig(name, 0, {s.sensors.mode, s.sensors.raster});
-  const Vehicle vehicle = load_vehicle(s.vehicle);
-  const World world = plain_passage();
-  const Pose X_WB = pose_of({3.2, 0, 0}, 0);
-  SensorSettings exact = s.sensors;
-  exact.noise = exact.bias = exact.detection = false;
-  exact.beam_angle_deg = exact.drop_out = 0;
-  const Recording stand = record(world, stand_at(X_WB), rig, vehicle.hull, exact, 1);
-  RigExhibit exhibit{world.mesh, rig, vehicle.hull, X_WB, {}};
+RigPictures::RigPictures(const Rig& rig, const Vehicle& vehicle, SensorSettings settings)
+    : world_(plain_passage()), rig_(rig), hull_(vehicle.hull), X_WB_(pose_of({3.2, 0, 0}, 0)) {
+  settings.noise = settings.bias = settings.detection = false;
+  settings.beam_angle_deg = settings.drop_out = 0;
+  settings.faults.clear();
+  const Recording stand = record(world_, stand_at(X_WB_), rig, hull_, settings, 1);
   for (size_t i = 0; i < rig.mounts.size(); ++i) {
     const Mount& mount = stand.truth.rig.mounts[i];
     std::vector<Vec3> ends;
     for (int k = 0; k < mount.laser.beams; ++k) {
       const double a = mount.laser.beam_angle_rad(k), r = stand.truth.scans[i].range_m[static_cast<size_t>(k)];
-      ends.push_back(X_WB * mount.X_BS * Vec3(r * std::cos(a), r * std::sin(a), 0));
+      ends.push_back(X_WB_ * mount.X_BS * Vec3(r * std::cos(a), r * std::sin(a), 0));
     }
-    exhibit.ends_W.push_back(std::move(ends));
+    ends_W_.push_back(std::move(ends));
   }
+}
+
+Picture RigPictures::from(RigView view) const {
+  return rig_picture({world_.mesh, rig_, hull_, X_WB_, ends_W_}, view);
+}
+
+int rig_command(const std::string& name, const Common& common, Console& console) {
+  Scenario s;
+  s.sensors.rig = name;
+  s.sensors.baud = 0;
+  for (const std::string& a : common.assignments) set_field(fields(s), a);
+  const Rig rig = load_rig(s.sensors);
+  const RigPictures shown(rig, load_vehicle(s.vehicle), s.sensors);
   const std::string dir = common.out.empty() ? "out/" + rig.name : common.out;
   nlohmann::ordered_json pictures = nlohmann::ordered_json::array();
   for (const auto& [view, file] : {std::pair{RigView::corner, "corner.png"},
                                    {RigView::side, "side.png"},
                                    {RigView::front, "front.png"},
                                    {RigView::above, "above.png"}}) {
-    write_png(dir + "/" + file, rig_picture(exhibit, view));
+    write_png(dir + "/" + file, shown.from(view));
     console.result("picture: " + dir + "/" + file);
     pictures.push_back(dir + "/" + file);
   }

@@ -76,12 +76,17 @@ std::string summary(const World& world, size_t triangles) {
 
 }  // namespace
 
+World sound_world(const Scenario& s, const Progress& progress) {
+  World world = make_world(s.world, static_cast<std::uint64_t>(s.seed), progress);
+  world.name = s.name;
+  demand_sound(s.seed, check_world(world), check_truth(world));
+  return world;
+}
+
 World Stages::world(const Scenario& s) {
   World world;
   timed("world", [&] {
-    world = make_world(s.world, static_cast<std::uint64_t>(s.seed), console_.progress());
-    world.name = s.name;
-    demand_sound(s.seed, check_world(world), check_truth(world));
+    world = sound_world(s, console_.progress());
     plan_route(world, s.route,
                static_cast<std::uint64_t>(s.seed));  // a route that cannot be is said before files change
     write_text(out_ + "/scenario.toml", resolved_toml(s));

@@ -15,6 +15,9 @@
 
 namespace adit {
 
+/// The mine of a scenario, checked: Error (bug) where mesh or truth is not sound.
+World sound_world(const Scenario& s, const Progress& progress = {});
+
 /// The stages of a run in their order, each reading what the one before it made. A stage that succeeds puts its files
 /// in place and removes what later stages had made from older input, so that a folder never mixes two runs.
 class Stages {

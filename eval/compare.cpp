@@ -47,11 +47,7 @@ std::string truth_of(const Score& score) {
   return "";
 }
 
-// How far from what would be best: the number itself, or its distance from 0 for one that is good near 0.
-double badness(const Metric& m) {
-  const bool by_size = m.name.find("bias") != std::string::npos || m.name.ends_with("error_percent");
-  return m.better == Better::higher ? -m.value : by_size ? std::abs(m.value) : m.value;
-}
+double badness(const Metric& m) { return badness(m.name, m.better, m.value); }
 
 using Runs = std::map<int, const ScoredRun*>;  // by seed
 
@@ -134,6 +130,11 @@ ComparedMetric compared(const Metric& like, const std::vector<Runs>& groups, std
 }
 
 }  // namespace
+
+double badness(const std::string& name, Better better, double value) {
+  const bool by_size = name.find("bias") != std::string::npos || name.ends_with("error_percent");
+  return better == Better::higher ? -value : by_size ? std::abs(value) : value;
+}
 
 Spread spread_of(const std::vector<double>& values) {
   Spread s;

@@ -18,6 +18,10 @@ struct ScoredRun {
   std::optional<Score> score;  // none: the run failed
 };
 
+/// How far from what would be best: the number itself, its negative where higher is better, its distance from 0 where it
+/// is good near 0.
+double badness(const std::string& name, Better better, double value);
+
 /// A median with the interval that holds it with 95 %, where there are runs enough to say.
 struct Spread {
   std::int64_t n = 0;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sensors/settings.h"
 
+#include "base/rig_text.h"
+
 namespace adit {
 
 Fields fields(SensorSettings& s) {
   return {
       {"rig", &s.rig, "lasers and their mounts: a bundled rig or a file"},
+      {"mounts", &s.mounts, "changes to the rig: \"LASER key=value ...\" sets or adds, \"LASER off\" takes out"},
       {"mode", &s.mode, "range mode of every laser (8m, 16m, 32m, 80m); empty: as the rig says"},
       {"raster", &s.raster, "sector/step of every laser (180/1, 180/0.5, 100/0.25, ...); empty: as the rig says"},
       {"baud", &s.baud, "rate of the serial links, Bd: sets how many scans are lost between two", 0, 1e9},
@@ -41,7 +44,9 @@ Fields fields(SensorSettings& s) {
 }
 
 Rig load_rig(const SensorSettings& s) {
-  return load_rig(s.rig, s.baud, {s.mode, s.raster});
+  RigText rig = read_rig(s.rig);
+  change_rig(rig, s.mounts);
+  return rig_of(rig, s.baud, {s.mode, s.raster});
 }
 
 }  // namespace adit

@@ -12,7 +12,8 @@ namespace adit {
 /// What stands between a vehicle's true path and its recording. Each effect can be switched on alone.
 struct SensorSettings {
   std::string rig = "cart4";
-  std::string mode, raster;  // of every laser; empty: as the rig says
+  std::vector<std::string> mounts;  // changes to the rig: "LASER key=value ...", see base/rig_text.h
+  std::string mode, raster;         // of every laser; empty: as the rig says
   int baud = 38400;
   bool noise = true;                // of a range: the sheet's sd, growing near the detection threshold
   bool footprint = true;            // more of it where the spot is smeared over a slanting surface
@@ -45,7 +46,7 @@ struct SensorSettings {
 
 Fields fields(SensorSettings& settings);
 
-/// The rig that the settings name, at their rate, mode and raster; the errors of base/rig.h.
+/// The rig that the settings name, with their changes, at their rate, mode and raster; the errors of base/rig_text.h.
 Rig load_rig(const SensorSettings& settings);
 
 }  // namespace adit

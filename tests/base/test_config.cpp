@@ -95,5 +95,17 @@ TEST(Config, AnUnknownBundledNameIsAnsweredWithThoseThereAre) {
   }
 }
 
+TEST(Document, AListOfAnythingComesAsTextThatAFieldReads) {
+  const Document d =
+      Document::parse("x.toml", "v = [1, 2.0, \"a \\\"b\\\"\", true, [\"x\", \"y\"], []]\nn = 3\nt = [{a = 1}]\n");
+  EXPECT_EQ(d.texts("v"), (std::vector<std::string>{"1", "2.0", "\"a \\\"b\\\"\"", "true", "[\"x\", \"y\"]", "[]"}));
+  std::vector<std::string> words;
+  set_field({{"w", &words, ""}}, "w=" + d.texts("v")[4]);
+  EXPECT_EQ(words, (std::vector<std::string>{"x", "y"}));
+  EXPECT_TRUE(d.texts("none").empty());
+  EXPECT_THROW(d.texts("n"), Error);
+  EXPECT_THROW(d.texts("t"), Error);
+}
+
 }  // namespace
 }  // namespace adit

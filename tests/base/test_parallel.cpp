@@ -51,5 +51,20 @@ TEST_F(Parallel, EverySlotIsVisitedOnceAndAnExceptionComesThrough) {
                std::runtime_error);
 }
 
+TEST_F(Parallel, AThreadThatWaitsForAnInnerLoopDoesNotBeginAnotherTurnOfTheOuterOne) {
+  set_threads(4);
+  std::atomic<bool> nested{false};
+  parallel_for(64, [&](size_t) {
+    thread_local int turns = 0;  // of the outer loop that this thread is in
+    if (++turns > 1) nested = true;
+    std::atomic<int> done{0};
+    parallel_for(100, [&](size_t) { ++done; });
+    EXPECT_EQ(done, 100);
+    --turns;
+  });
+  set_threads(0);
+  EXPECT_FALSE(nested);
+}
+
 }  // namespace
 }  // namespace adit

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/rig.h"
+#include "base/rig_text.h"
 #include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
@@ -86,6 +87,46 @@ TEST(Rig, ABadRigIsAnsweredWithFileLineAndKey) {
   EXPECT_THAT(error_of("name='x'\n"), ::testing::HasSubstr("no [[laser]]"));
   EXPECT_THAT(error_of("[[laser]]\nname='a'\n[[laser]]\nname='a'\n"), ::testing::HasSubstr("a second time"));
   EXPECT_THAT(error_of("[[laser]]\nname='a'\nposition_m=[1, 2]\n"), ::testing::HasSubstr("three numbers"));
+}
+
+TEST(RigText, ChangesSetAddAndTakeOutLasersInTheirOrder) {
+  RigText rig = read_rig("cart4");
+  change_rig(rig, {"down off", "up pitch_deg=-80 z_m=0.9", "rear model=lms291 position_m=[-0.6, 0.0, 1.1] yaw_deg=180",
+                   "rear yaw_deg=170"});
+  ASSERT_EQ(rig.lasers.size(), 4u);
+  EXPECT_EQ(rig.lasers[2].pitch_deg, -80);
+  EXPECT_EQ(rig.lasers[2].position_m, (std::vector<double>{0, 0, 0.9}));
+  EXPECT_EQ(rig.lasers[3].model, "lms291");
+  EXPECT_EQ(rig.lasers[3].yaw_deg, 170);
+  EXPECT_NEAR(rig_of(rig, 0).mounts[3].X_BS.translation().x(), -0.6, 1e-12);
+}
+
+TEST(RigText, WhatIsWrittenIsReadAgain) {
+  for (const char* name : {"cart4", "groundhog2", "groundhog_tilt"}) {
+    const std::string file = scratch("rig_again.toml"), once = to_toml(read_rig(name));
+    write_text(file, once);
+    EXPECT_EQ(to_toml(read_rig(file)), once);
+  }
+}
+
+TEST(RigText, AChangeThatCannotBeIsQuotedWithItsCause) {
+  const auto said = [](const std::string& change) -> std::string {
+    RigText rig = read_rig("cart4");
+    try {
+      change_rig(rig, {change});
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(said("up"), ::testing::HasSubstr("sensors.mounts: \"up\": must be \"LASER key=value"));
+  EXPECT_THAT(said("upp off"), ::testing::HasSubstr("the rig 'cart4' has no laser 'upp'"));
+  EXPECT_THAT(said("up pich_deg=3"), ::testing::HasSubstr("did you mean 'pitch_deg'?"));
+  EXPECT_THAT(said("up name=down"), ::testing::HasSubstr("another name"));
+  EXPECT_THAT(said("up tilt_deg=[10, -10]"), ::testing::HasSubstr("'tilt_deg' must be"));
+  RigText rig = read_rig("cart4");
+  change_rig(rig, {"front off", "profile off", "up off", "down off"});
+  EXPECT_THROW(rig_of(rig, 0), Error);
 }
 
 }  // namespace

@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/cells.h"
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/parallel.h"
+#include "cli/stages.h"
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <condition_variable>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <set>
+#include <tuple>
+
+namespace adit {
+namespace {
+
+namespace fs = std::filesystem;
+
+// FNV-1a, its bits mixed at the end.
+std::string digest(const std::string& text) {
+  std::uint64_t h = 0xcbf29ce484222325;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9;
+  h = (h ^ (h >> 27)) * 0x94d049bb133111eb;
+  char hex[17];
+  std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(h ^ (h >> 31)));
+  return hex;
+}
+
+// What a setting that may name a file refers to: its text, empty for a bundled name or a file that is not there.
+std::string text_behind(const std::string& name) {
+  std::error_code failed;
+  return name.find_first_of("/.") != std::string::npos && fs::is_regular_file(name, failed) ? read_text(name) : "";
+}
+
+// A scenario without what no score depends on.
+Scenario bare(Scenario s) {
+  s.name = s.about = "";
+  s.report = {};
+  return s;
+}
+
+std::string world_key(const Scenario& s) {
+  Scenario only;
+  only.world = s.world, only.seed = s.seed;
+  return digest(resolved_toml(only) + text_behind(s.world.plan));
+}
+std::string drive_key(const Scenario& s) {
+  Scenario only;
+  only.world = s.world, only.seed = s.seed, only.route = s.route, only.drive = s.drive, only.vehicle = s.vehicle;
+  return digest(resolved_toml(only) + text_behind(s.world.plan) + text_behind(s.vehicle) +
+                text_behind(s.drive.commands));
+}
+std::string recording_key(const Scenario& s) {
+  Scenario only = bare(s);
+  only.map = {}, only.external = {}, only.score = {};
+  return digest(resolved_toml(only) + text_behind(s.sensors.rig) + drive_key(s));
+}
+
+struct Job {
+  Scenario scenario;
+  std::string name, world, drive, recording;
+};
+
+// Something that several cells need: made once, by the first that comes.
+template <class T>
+struct Shared {
+  size_t left = 0;  // cells that still need it
+  bool making = false, made = false;
+  std::shared_ptr<const T> value;  // or the reason why there is none
+  std::string failure;
+};
+
+struct Failure {
+  std::string why;
+};
+
+double gib_of(const char* file, const std::string& key) {
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(key + ":")) return std::stod(line.substr(key.size() + 1)) / (1024.0 * 1024.0);
+  return 0;
+}
+
+// Error texts of a failure that belongs to one cell; what belongs to the machine goes on.
+template <class Work>
+std::string reason_of(const Work& work) {
+  try {
+    work();
+    return "";
+  } catch (const Failure& f) {
+    return f.why;
+  } catch (const Error& e) {
+    if (e.fault() == Fault::file) throw;
+    return e.what();
+  } catch (const std::bad_alloc&) {
+    throw Error("out of memory; fewer cells at once take less", Fault::file);
+  } catch (const std::exception& e) {
+    return std::string("internal error: ") + e.what();
+  }
+}
+
+std::string host() {
+  char name[256] = "";
+  ::gethostname(name, sizeof name - 1);
+  return name;
+}
+
+// A cell's folder while it is being made: ".NAME.HOST.PID".
+std::string temporary(const std::string& dir, const std::string& name) {
+  return dir + "/." + name + "." + host() + "." + std::to_string(::getpid());
+}
+
+// What processes of this machine left that are no more.
+void sweep(const std::string& dir) {
+  std::error_code failed;
+  for (const fs::directory_entry& entry : fs::directory_iterator(dir, failed)) {
+    const std::string file = entry.path().filename().string(), middle = "." + host() + ".";
+    const size_t at = file.find(middle);
+    if (!file.starts_with(".") || at != 17) continue;
+    const int pid = std::atoi(file.c_str() + at + middle.size());
+    if (pid > 0 && pid != ::getpid() && ::kill(pid, 0) != 0) fs::remove_all(entry.path(), failed);
+  }
+}
+
+class Kitchen {
+ public:
+  Kitchen(std::list<Job> pending, const CellsSettings& settings, const Progress& progress)
+      : pending_(std::move(pending)), settings_(settings), progress_(progress), all_(pending_.size()) {
+    for (const Job& job : pending_) {
+      ++worlds_[job.world].left;
+      ++drives_[job.drive].left;
+      ++recordings_[job.recording].left;
+    }
+  }
+
+  // Until nothing is left; several threads may be at it.
+  void work() {
+    while (std::optional<Job> job = next()) {
+      try {
+        finish(*job);
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        if (!fault_) fault_ = std::current_exception();
+      }
+      leave(*job);
+    }
+  }
+
+  void rethrow() const {
+    if (fault_) std::rethrow_exception(fault_);
+  }
+  size_t failed() const { return failed_; }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::list<Job> pending_;
+  const CellsSettings& settings_;
+  const Progress& progress_;
+  size_t all_, done_ = 0, failed_ = 0, running_ = 0, most_ = 1;
+  std::exception_ptr fault_;
+  std::map<std::string, Shared<World>> worlds_;
+  std::map<std::string, Shared<Drive>> drives_;
+  std::map<std::string, Shared<Recording>> recordings_;
+  std::mutex h5_;  // HDF5 is for one thread
+
+  bool ready(const Job& job) {
+    return !worlds_[job.world].making && !drives_[job.drive].making && !recordings_[job.recording].making;
+  }
+
+  // By what the cells before it took.
+  bool memory_left() const {
+    return running_ == 0 ||
+           gib_of("/proc/meminfo", "MemAvailable") > gib_of("/proc/self/status", "VmHWM") / static_cast<double>(most_);
+  }
+
+  std::optional<Job> next() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      if (fault_ || pending_.empty()) return {};
+      const auto at = memory_left()
+                          ? std::find_if(pending_.begin(), pending_.end(), [&](const Job& j) { return ready(j); })
+                          : pending_.end();
+      if (at == pending_.end()) {
+        changed_.wait(lock);
+        continue;
+      }
+      Job job = std::move(*at);
+      pending_.erase(at);
+      const auto mark = [](auto& shared) { shared.making = !shared.made; };
+      mark(worlds_[job.world]), mark(drives_[job.drive]), mark(recordings_[job.recording]);
+      most_ = std::max(most_, ++running_);
+      return job;
+    }
+  }
+
+  void leave(const Job& job) {
+    const std::lock_guard lock(mutex_);
+    const auto drop = [](auto& all, const std::string& key) {
+      if (--all[key].left == 0)
+        all.erase(key);
+      else
+        all[key].making = false;
+    };
+    drop(worlds_, job.world), drop(drives_, job.drive), drop(recordings_, job.recording);
+    --running_;
+    progress_("cells", static_cast<double>(++done_), static_cast<double>(all_));
+    changed_.notify_all();
+  }
+
+  // The thing of a key: as another cell made it, or made here. A Failure where it cannot be made.
+  template <class T, class Make>
+  std::shared_ptr<const T> had(std::map<std::string, Shared<T>>& all, const std::string& key, const Make& make) {
+    Shared<T>* shared = nullptr;
+    {
+      const std::lock_guard lock(mutex_);
+      shared = &all[key];  // stays where it is
+    }
+    if (!shared->made) {
+      std::shared_ptr<const T> value;
+      const std::string failure = reason_of([&] { value = std::make_shared<const T>(make()); });
+      const std::lock_guard lock(mutex_);
+      shared->value = value, shared->failure = failure, shared->made = true, shared->making = false;
+      changed_.notify_all();
+    }
+    const std::lock_guard lock(mutex_);
+    if (!shared->value) throw Failure{shared->failure};
+    return shared->value;
+  }
+
+  Score score_of(const Job& job, const std::string& at) {
+    const Scenario& s = job.scenario;
+    const auto seed = static_cast<std::uint64_t>(s.seed);
+    const auto world = had(worlds_, job.world, [&] { return sound_world(s); });
+    const auto drive = had(drives_, job.drive, [&] {
+      Drive d = adit::drive(*world, plan_route(*world, s.route, seed), load_vehicle(s.vehicle), s.drive, seed);
+      if (d.end != DriveEnd::finished) throw Failure{"drive " + drive_end_name(d.end) + ": " + d.cause};
+      return d;
+    });
+    const auto recording = had(recordings_, job.recording, [&] {
+      return record(*world, *drive, load_rig(s.sensors), load_vehicle(s.vehicle).hull, s.sensors, seed);
+    });
+    if (settings_.keep_recording) {
+      const std::lock_guard lock(h5_);
+      save_log(at + "/recording/log.h5", recording->log);
+      save_truth(at + "/recording/truth.h5", recording->truth);
+    }
+    save_estimate(at + "/map", estimate_of(s, recording->log, at));
+    const Score score = score_map(*world, recording->truth, recording->log.rig, load_estimate(at + "/map"), s.score);
+    if (!settings_.keep_map) fs::remove_all(at + "/map");
+    return score;
+  }
+
+  static Estimate estimate_of(const Scenario& s, const Log& log, const std::string& at) {
+    if (s.external.command.empty()) return make_map(log, s.map);
+    ExternalRun run = run_external(s.external, log, s.seed, at + "/external");
+    fs::remove_all(at + "/external");
+    if (!run.estimate) throw Failure{"mapper failed: " + run.failure};
+    return std::move(*run.estimate);
+  }
+
+  void finish(const Job& job) {
+    const std::string at = temporary(settings_.dir, job.name);
+    const auto began = std::chrono::steady_clock::now();
+    fs::remove_all(at);
+    write_text(at + "/scenario.toml", resolved_toml(job.scenario));
+    try {
+      const std::string failure = reason_of([&] { write_score(at + "/score.json", score_of(job, at)); });
+      if (!failure.empty()) {
+        for (const char* part : {"map", "recording", "external", "score.json"}) fs::remove_all(at + "/" + part);
+        write_text(at + "/failure.txt", failure + "\n");
+        const std::lock_guard lock(mutex_);
+        ++failed_;
+      }
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+      write_text(at + "/timing.json", nlohmann::ordered_json{{"seconds", seconds}}.dump() + "\n");
+    } catch (...) {
+      std::error_code ignored;
+      fs::remove_all(at, ignored);
+      throw;
+    }
+    publish(at, settings_.dir + "/" + job.name);
+  }
+
+  // Where another process was faster its cell stays: it holds the same bytes.
+  static void publish(const std::string& at, const std::string& to) {
+    std::error_code failed, ignored;
+    fs::rename(at, to, failed);
+    if (!failed) return;
+    fs::remove_all(at, ignored);
+    if (!fs::exists(to + "/scenario.toml", ignored))
+      throw Error(to + ": cannot be put in place: " + failed.message(), Fault::file);
+  }
+};
+
+}  // namespace
+
+std::string cell_name(const Scenario& scenario) {
+  return digest(resolved_toml(bare(scenario)) + recording_key(scenario));
+}
+
+CellsRun run_cells(const std::vector<Scenario>& scenarios, const CellsSettings& settings, const Progress& progress) {
+  if (settings.shards < 1 || settings.shard < 1 || settings.shard > settings.shards)
+    throw Error("shard " + std::to_string(settings.shard) + "/" + std::to_string(settings.shards) +
+                ": must be I/N with 1 <= I <= N");
+  std::vector<Job> jobs;
+  std::set<std::string> seen;
+  for (const Scenario& s : scenarios) {
+    Job job{bare(s), cell_name(s), world_key(s), drive_key(s), recording_key(s)};
+    job.scenario.name = job.name;
+    if (seen.insert(job.name).second) jobs.push_back(std::move(job));
+  }
+  const auto order = [](const Job& j) { return std::tie(j.world, j.drive, j.recording, j.name); };
+  std::sort(jobs.begin(), jobs.end(), [&](const Job& a, const Job& b) { return order(a) < order(b); });
+  const auto part = [&](int n) { return jobs.size() * static_cast<size_t>(n) / static_cast<size_t>(settings.shards); };
+  std::error_code failed;
+  fs::create_directories(settings.dir, failed);
+  if (failed) throw Error(settings.dir + ": cannot make this folder: " + failed.message(), Fault::file);
+  sweep(settings.dir);
+  CellsRun run;
+  std::list<Job> pending;
+  for (size_t i = part(settings.shard - 1); i < part(settings.shard); ++i) {
+    ++run.asked;
+    const std::string at = settings.dir + "/" + jobs[i].name;
+    if (!fs::exists(at)) {
+      pending.push_back(std::move(jobs[i]));
+      continue;
+    }
+    ++run.there;
+    run.failed += fs::exists(at + "/failure.txt");
+  }
+  run.made = pending.size();
+  Kitchen kitchen(std::move(pending), settings, progress);
+  const int workers = std::min<int>(settings.at_once > 0 ? settings.at_once : threads(), static_cast<int>(run.made));
+  if (workers > 0) parallel_for(static_cast<size_t>(workers), [&](size_t) { kitchen.work(); });
+  kitchen.rethrow();
+  run.failed += kitchen.failed();
+  return run;
+}
+
+std::optional<Cell> load_cell(const std::string& dir, const std::string& name) {
+  const std::string at = dir + "/" + name;
+  if (!fs::exists(at)) return {};
+  Cell cell;
+  cell.name = name;
+  if (fs::exists(at + "/failure.txt")) {
+    cell.failure = read_text(at + "/failure.txt");
+    while (cell.failure.ends_with('\n')) cell.failure.pop_back();
+  } else {
+    cell.score = read_score(at + "/score.json");
+  }
+  cell.seconds = nlohmann::json::parse(read_text(at + "/timing.json")).value("seconds", 0.0);
+  return cell;
+}
+
+}  // namespace adit
