@@ -31,17 +31,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// FNV-1a, its bits mixed at the end.
-std::string digest(const std::string& text) {
-  std::uint64_t h = 0xcbf29ce484222325;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9;
-  h = (h ^ (h >> 27)) * 0x94d049bb133111eb;
-  char hex[17];
-  std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(h ^ (h >> 31)));
-  return hex;
-}
-
 // What a setting that may name a file refers to: its text, empty for a bundled name or a file that is not there.
 std::string text_behind(const std::string& name) {
   std::error_code failed;
@@ -310,6 +299,17 @@ class Kitchen {
 };
 
 }  // namespace
+
+// FNV-1a, its bits mixed at the end.
+std::string digest(const std::string& text) {
+  std::uint64_t h = 0xcbf29ce484222325;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9;
+  h = (h ^ (h >> 27)) * 0x94d049bb133111eb;
+  char hex[17];
+  std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(h ^ (h >> 31)));
+  return hex;
+}
 
 std::string cell_name(const Scenario& scenario) {
   return digest(resolved_toml(bare(scenario)) + recording_key(scenario));

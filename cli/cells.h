@@ -15,6 +15,9 @@ namespace adit {
 // in a folder that bears the hash of its settings. What bears that name is whole: scenario.toml, timing.json, and
 // score.json (the same bytes as a run's) or failure.txt with the reason why there is none.
 
+/// 16 hex digits of a text.
+std::string digest(const std::string& text);
+
 /// 16 hex digits from every setting of a scenario that its score can depend on (so not name, about and [report]), from
 /// what is in the files that it names, and from adit's version.
 std::string cell_name(const Scenario& scenario);

@@ -10,6 +10,7 @@
 #include "cli/set_command.h"
 #include "cli/stages.h"
 #include "cli/study_file.h"
+#include "cli/suite.h"
 #include "eval/compare.h"
 #include "eval/explain.h"
 #include "eval/render.h"
@@ -250,18 +251,16 @@ int render_command(const std::string& out, const std::string& view, const Common
 }
 
 int list_command(const std::string& what, Console& console) {
-  const std::vector<std::pair<std::string, std::string>> folders{{"scenarios", "cli/scenarios"},
-                                                                 {"studies", "cli/studies"},
-                                                                 {"vehicles", "sim/vehicles"},
-                                                                 {"rigs", "sensors/rigs"},
-                                                                 {"lasers", "sensors/lasers"}};
+  const std::vector<std::pair<std::string, std::string>> folders{
+      {"scenarios", "cli/scenarios"}, {"suites", "cli/suites"}, {"studies", "cli/studies"},
+      {"vehicles", "sim/vehicles"},   {"rigs", "sensors/rigs"}, {"lasers", "sensors/lasers"}};
   ordered_json all = ordered_json::object();
   for (const auto& [kind, folder] : folders)
     if (what.empty() || what == kind) all[kind] = bundled_names(folder);
   if (what.empty() || what == "views") all["views"] = view_names();
   if (what.empty() || what == "metrics") all["metrics"] = defined_metrics();
   if (all.empty())
-    throw Error("list " + what + ": there are scenarios, studies, vehicles, rigs, lasers, views and metrics");
+    throw Error("list " + what + ": there are scenarios, suites, studies, vehicles, rigs, lasers, views and metrics");
   for (const auto& [kind, names] : all.items()) {
     console.result(kind);
     for (const auto& name : names) {
@@ -280,10 +279,13 @@ int help_command(const std::string& topic, Console& console) {
   Scenario s;
   MineSet set;
   Study study;
-  const std::map<std::string, Fields> topics = {
-      {"scenario", fields(s)}, {"set", fields(set)}, {"study", study_fields(study)}};
+  Suite suite;
+  const std::map<std::string, Fields> topics = {{"scenario", fields(s)},
+                                                {"set", fields(set)},
+                                                {"study", study_fields(study)},
+                                                {"suite", suite_fields(suite)}};
   const auto of_topic = topics.find(topic);
-  if (of_topic == topics.end()) throw Error("help " + topic + ": the topics are: scenario, set, study");
+  if (of_topic == topics.end()) throw Error("help " + topic + ": the topics are: scenario, set, study, suite");
   for (const Field& f : of_topic->second) {
     const std::string value = to_toml({f});
     const std::string shown = value.substr(value.find(" = ") + 3);

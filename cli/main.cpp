@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "cli/commands.h"
 #include "cli/convert.h"
+#include "cli/nightly_command.h"
 #include "cli/rig_command.h"
 #include "cli/set_command.h"
 #include "cli/stats_command.h"
@@ -26,6 +27,7 @@ struct Words {
   int threads = 0, every = 1;
   std::string first, second, world, truth, check, stats, shard;
   adit::ScoreInput score;
+  adit::NightlyInput nightly;
   std::vector<std::string> outs;
 };
 
@@ -55,6 +57,7 @@ int dispatch(CLI::App& app, const Words& w) {
   if (app.got_subcommand("render")) return render_command(w.first, w.second, w.common, console);
   if (app.got_subcommand("convert")) return convert_command(w.first, w.second, w.truth, w.every, console);
   if (app.got_subcommand("rig")) return rig_command(w.first, w.common, console);
+  if (app.got_subcommand("nightly")) return nightly_command(w.nightly, w.common, console);
   if (app.got_subcommand("study")) return study_command(w.first, w.second, w.shard, w.common, console);
   if (app.got_subcommand("list")) return list_command(w.first, console);
   return help_command(w.first, console);
@@ -80,6 +83,19 @@ void add_score(CLI::App& app, Words& w) {
   score->add_option("--evo", w.score.evo, "write the path's errors as an archive (zip) that evo_res opens");
   score->add_option("--explain", w.score.explain, "define this metric, as 'adit list metrics' names it");
   add_common(score, w, false);
+}
+
+void add_nightly(CLI::App& app, Words& w) {
+  CLI::App* nightly = app.add_subcommand("nightly", "scenarios x seeds against history: has accuracy been lost?");
+  nightly->add_option("suite", w.nightly.suite, "bundled name or TOML file")->required();
+  nightly->add_option("--history", w.nightly.history, "SQLite file; without it only tolerances are judged");
+  nightly->add_option("--baseline", w.nightly.baseline, "window, branch:NAME, commit:ID or night:ID");
+  nightly->add_option("--commit", w.nightly.commit, "of what is tested; else as CI or git say");
+  nightly->add_option("--branch", w.nightly.branch, "of what is tested; else as CI or git say");
+  nightly->add_option("--shard", w.nightly.shard,
+                      "I/N: only make this part of the runs; the call without it judges all");
+  nightly->add_option("--accept", w.nightly.accept, "why the last night is the new baseline; runs nothing");
+  add_common(nightly, w, false);
 }
 
 void add_commands(CLI::App& app, Words& w) {
@@ -139,11 +155,12 @@ void add_commands(CLI::App& app, Words& w) {
   study->add_option("folder", w.second, "of 'merge'");
   study->add_option("--shard", w.shard, "I/N: only this part of the runs; 'adit study merge OUT' joins them");
   add_common(study, w, true);
+  add_nightly(app, w);
   CLI::App* list = app.add_subcommand("list", "what is bundled");
-  list->add_option("what", w.first, "scenarios, studies, vehicles, rigs, lasers, views or metrics");
+  list->add_option("what", w.first, "scenarios, suites, studies, vehicles, rigs, lasers, views or metrics");
   add_common(list, w, false);
   CLI::App* help = app.add_subcommand("help", "this text, or a topic");
-  help->add_option("topic", w.first, "scenario or set");
+  help->add_option("topic", w.first, "scenario, set, study or suite");
 }
 
 }  // namespace

@@ -170,25 +170,56 @@ std::vector<double> holm(const std::vector<double>& p) {
   return out;
 }
 
-double sign_flip_p(const std::vector<double>& differences) {
+namespace {
+
+// The sum under every pattern of signs, each summed in the same order.
+std::vector<double> all_sums(const std::vector<double>& values) {
+  std::vector<double> sums{0};
+  for (const double v : values) {
+    const size_t half = sums.size();
+    sums.resize(2 * half);
+    for (size_t k = 0; k < half; ++k) sums[half + k] = sums[k] + v, sums[k] -= v;
+  }
+  return sums;
+}
+
+std::vector<double> drawn_sums(const std::vector<double>& values) {
+  std::vector<double> sums(drawn_patterns, 0.0);
+  for (std::uint64_t k = 0; k < sums.size(); ++k)
+    for (size_t i = 0; i < values.size(); ++i)
+      sums[k] += random_bits(1, Draw::bootstrap, k, i / 64) >> (i % 64) & 1 ? values[i] : -values[i];
+  return sums;
+}
+
+}  // namespace
+
+double sign_flip_p(const std::vector<double>& differences, Tail tail) {
   const size_t n = differences.size();
   if (n == 0) return 1;
   double sum = 0, size = 0;
   for (const double d : differences) sum += d, size += std::abs(d);
   const bool exact = n <= most_exact;
-  const std::uint64_t patterns = exact ? std::uint64_t{1} << n : drawn_patterns;
-  std::uint64_t as_far = 0;
-  for (std::uint64_t k = 0; k < patterns; ++k) {
-    double flipped = 0;
-    for (size_t i = 0; i < n; ++i) {
-      const std::uint64_t word = exact ? k >> i : random_bits(1, Draw::bootstrap, k, i / 64) >> (i % 64);
-      flipped += word & 1 ? differences[i] : -differences[i];
-    }
-    as_far += std::abs(flipped) >= std::abs(sum) - 1e-12 * size;
-  }
+  const std::vector<double> flipped = exact ? all_sums(differences) : drawn_sums(differences);
+  const double slack = 1e-12 * size;  // of sums that are equal but for rounding
+  const auto as_far = std::count_if(flipped.begin(), flipped.end(), [&](double f) {
+    return tail == Tail::both ? std::abs(f) >= std::abs(sum) - slack : f >= sum - slack;
+  });
   // Drawn patterns: the one that was seen counts as one of them, so that p is never 0.
-  return exact ? static_cast<double>(as_far) / static_cast<double>(patterns)
-               : static_cast<double>(as_far + 1) / static_cast<double>(patterns + 1);
+  const auto patterns = static_cast<double>(flipped.size()), far = static_cast<double>(as_far);
+  return exact ? far / patterns : (far + 1) / (patterns + 1);
+}
+
+std::vector<double> signed_ranks(const std::vector<double>& differences) {
+  std::vector<double> sizes;
+  for (const double d : differences) sizes.push_back(std::abs(d));
+  std::sort(sizes.begin(), sizes.end());
+  std::vector<double> ranks;
+  for (const double d : differences) {
+    const auto [low, high] = std::equal_range(sizes.begin(), sizes.end(), std::abs(d));
+    const double rank = 0.5 * static_cast<double>((low - sizes.begin()) + (high - sizes.begin()) + 1);
+    ranks.push_back(d == 0 ? 0 : std::copysign(rank, d));
+  }
+  return ranks;
 }
 
 Comparison compare_runs(const std::vector<ScoredRun>& runs, const std::vector<std::string>& suite) {

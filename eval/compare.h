@@ -29,9 +29,14 @@ struct Spread {
 };
 /// Percentile bootstrap of the median, 2000 samples at fixed addresses: the same every time.
 Spread spread_of(const std::vector<double>& values);
-/// Two-sided p of the hypothesis that the differences are as likely of either sign: the share of sign patterns whose
-/// mean is at least as far from 0. All 2^n of them up to n = 16, 65536 drawn ones beyond. 1 for none.
-double sign_flip_p(const std::vector<double>& differences);
+enum class Tail { both, above };  // of a test: either way off, or above 0
+/// p of the hypothesis that the differences are as likely of either sign: the share of sign patterns whose mean is at
+/// least as far from 0 (both), or at least as great (above). All 2^n of them up to n = 16, 65536 drawn ones beyond. 1 for
+/// none.
+double sign_flip_p(const std::vector<double>& differences, Tail tail = Tail::both);
+/// Each difference's rank by size with its sign, ties sharing theirs, 0 for 0: sign_flip_p of them is Wilcoxon's
+/// signed-rank test, which a few great differences cannot sway (Biometrics Bulletin 1, 1945; zeros after Pratt, 1959).
+std::vector<double> signed_ranks(const std::vector<double>& differences);
 
 /// Holm's correction of several p for each other (Scand. J. Statist. 6, 1979), in their order; never above 1.
 std::vector<double> holm(const std::vector<double>& p);

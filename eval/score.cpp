@@ -20,6 +20,7 @@
 #include "rays/caster.h"
 
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <numbers>
 #include <optional>
@@ -299,12 +300,27 @@ void add_notes(Score& score) {
     if (!m.why.empty() && !silent(m.name)) score.notes.push_back(m.name + " could not be had: " + m.why + ".");
 }
 
+// The path that was driven, to a tenth of a millimetre: another drive through the same mine is another truth.
+std::string path_hash(const Trajectory& path) {
+  std::uint64_t h = 0xcbf29ce484222325;  // FNV-1a
+  const auto add = [&](double metres) {
+    h = (h ^ static_cast<std::uint64_t>(std::llround(metres * 1e4))) * 0x100000001b3;
+  };
+  for (const Pose& X : path.X_WB)
+    for (int k = 0; k < 3; ++k) add(X.translation()[k]);
+  char hex[17];
+  std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(h));
+  return hex;
+}
+
 void add_meta(const Bench& b, Score& score) {
   const ScoreSettings& s = b.settings;
   const auto add = [&](const std::string& key, const std::string& value) { score.meta.emplace_back(key, value); };
   add("method", b.estimate.method);
   add("world", b.world.name);
   add("truth_hash", b.truth.world);
+  add("path_hash", path_hash(b.truth.drive.path));
+  add("evaluator", std::to_string(evaluator_version));
   add_path_meta(b.match, b.first_pose, b.se3, b.yaw_xyz, s, score);
   const Vec3 shift = b.X_BN.translation();
   add("mapping_mount_error", text(shift.norm()) + " m, " + text(Eigen::AngleAxisd(b.X_BN.linear()).angle() / deg) +

@@ -110,6 +110,9 @@ struct ScoreSettings {
 };
 Fields fields(ScoreSettings& settings);
 
+/// Raised whenever a metric's definition changes, so that numbers of two definitions are never held against each other.
+constexpr int evaluator_version = 1;
+
 /// Holds an estimate against the truth. All lengths in m, angles in degrees where a name ends in _deg.
 /// @param truth     of the same world: Error (not_comparable) when its hash is another
 /// @param nominal   the rig that the mapper was told; the path is judged for the mapping laser's nominal mount

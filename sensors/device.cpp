@@ -20,6 +20,7 @@ double even(std::uint64_t seed, Draw draw, std::uint64_t i, std::uint64_t j) {
 Device make_device(const LaserModel& model, size_t mount, const SensorSettings& settings, std::uint64_t seed) {
   Device device{.model = model};
   if (settings.bias) device.bias_m = model.bias_m * even(seed, Draw::laser_device, mount, 0);
+  device.bias_m += settings.range_offset_m;
   if (settings.energy) device.energy_m = model.energy_m * even(seed, Draw::laser_device, mount, 1);
   if (settings.warm_up) device.warm_up_m = model.warm_up_m * even(seed, Draw::laser_warm_up, mount, 0);
   if (settings.range_curve)

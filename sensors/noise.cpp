@@ -89,7 +89,7 @@ Reading reading(const Device& device, std::span<Return> returns, double cosine, 
   double range_m =
       counted(echo.range_m, settings) + device_error_m(device, echo.range_m, echo.effective_reflectivity, on_s);
   if (settings.noise && chance.range != 0)
-    range_m += sigma_m(device, echo, returns.size(), cosine, settings) * chance.range;
+    range_m += settings.noise_scale * sigma_m(device, echo, returns.size(), cosine, settings) * chance.range;
   return told(device, range_m, echo.surfaces, echo.spread_m > 0.05 ? trouble::mixed : 0);
 }
 

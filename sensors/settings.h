@@ -16,8 +16,10 @@ struct SensorSettings {
   std::string mode, raster;         // of every laser; empty: as the rig says
   int baud = 38400;
   bool noise = true;                // of a range: the sheet's sd, growing near the detection threshold
+  double noise_scale = 1;           // of a worn device: factor of that sd
   bool footprint = true;            // more of it where the spot is smeared over a slanting surface
   bool bias = true;                 // a constant of each device
+  double range_offset_m = 0;        // of every device, besides
   bool detection = true;            // dark, far and slanting targets give no echo
   double detection_spread = 0.1;    // width of the threshold in ln(reflectivity)
   double beam_angle_deg = 0.05;     // sd of a beam's direction in the scan plane

@@ -129,6 +129,20 @@ TEST(Noise, DevicesDifferInBiasWithinTheirBand) {
   EXPECT_EQ(make_device(model, 0, exact(), 1).bias_m, 0);
 }
 
+TEST(Noise, AnOffsetMovesEveryDeviceAndAScaleWidensTheNoiseByThatMuch) {
+  const LaserModel model = load_laser("lms200", 0);
+  SensorSettings offset;
+  offset.range_offset_m = 0.005;
+  for (size_t mount = 0; mount < 4; ++mount)
+    EXPECT_NEAR(make_device(model, mount, offset, 3).bias_m - make_device(model, mount, {}, 3).bias_m, 0.005, 1e-15);
+  SensorSettings noisy = exact();
+  noisy.noise = true;
+  const double sd = sample(device_of("lms200"), {3, 0.5}, noisy, 1).sd;
+  noisy.noise_scale = 1.1;
+  // The same draws, rounded to millimetres whose own sd of 0.3 mm is not scaled: 0.3^2 / 5^2 / 2 of 10 %.
+  EXPECT_NEAR(sample(device_of("lms200"), {3, 0.5}, noisy, 1).sd / sd, 1.1, 0.001);
+}
+
 TEST(Noise, TheCurveSwingsWithinItsBandAndDiffersByDevice) {
   const LaserModel model = load_laser("lms200", 0);
   SensorSettings s = exact();
