@@ -26,7 +26,7 @@ HOMES = {
     r"png\.h": ["eval/png.cpp"],
     r"stb_|stb/": ["eval/type.cpp"],
     r"hdf5\.h|H5": ["base/h5.cpp"],
-    r"zlib\.h": ["base/h5.cpp"],
+    r"zlib\.h": ["base/h5.cpp", "eval/packed.cpp"],
     r"bzlib\.h|lz4": ["base/bag_format.cpp"],
     r"sqlite3\.h": ["base/sqlite.cpp"],
     r"toml\+\+/": ["base/config.cpp"],

@@ -12,6 +12,7 @@
 #include "cli/study_file.h"
 #include "cli/suite.h"
 #include "eval/compare.h"
+#include "eval/compare_page.h"
 #include "eval/explain.h"
 #include "eval/render.h"
 #include "mapper/certificate.h"
@@ -81,18 +82,44 @@ struct RunFolder {
   Recording recording;
   Estimate estimate;
   Score score;
+  std::vector<std::string> missing;
+
+  ReportInput input() const {
+    return {world, recording.log, recording.truth, estimate, score, resolved_toml(scenario), scenario.name, missing};
+  }
 };
 
+// What of a run's folder is there and can be read; `missing` says what is not.
 RunFolder load_run(const std::string& out, const Common& common) {
   if (!fs::is_directory(out)) throw Error(out + ": no such folder; it must be the folder of a run");
   RunFolder run;
   run.scenario = scenario_in(out, common);
-  run.world = load_world(out + "/world");
-  run.recording.log = load_log(out + "/recording/log.h5");
-  run.recording.truth = load_truth(out + "/recording/truth.h5");
-  run.estimate = load_estimate(out + "/map");
-  // The score's pictures need more than score.json keeps: it is computed again.
-  run.score = score_map(run.world, run.recording.truth, run.recording.log.rig, run.estimate, run.scenario.score);
+  int parts = 0;
+  const auto load = [&](const std::string& what, const std::string& file, const auto& read) {
+    if (!fs::exists(out + "/" + file)) {
+      run.missing.push_back(what + ": there is no " + file);
+      return;
+    }
+    try {
+      read(out + "/" + file);
+      ++parts;
+    } catch (const Error& e) {
+      run.missing.push_back(what + ": " + e.what());
+    }
+  };
+  load("the mine", "world", [&](const std::string& dir) { run.world = load_world(dir); });
+  load("the recording", "recording/log.h5", [&](const std::string& file) { run.recording.log = load_log(file); });
+  load("the truth", "recording/truth.h5", [&](const std::string& file) { run.recording.truth = load_truth(file); });
+  load("the map", "map", [&](const std::string& dir) { run.estimate = load_estimate(dir); });
+  if (parts == 4) {
+    // The score's pictures need more than score.json keeps: it is computed again.
+    load("the score", "world", [&](const std::string&) {
+      run.score = score_map(run.world, run.recording.truth, run.recording.log.rig, run.estimate, run.scenario.score);
+    });
+    return run;
+  }
+  load("the score", "score.json", [&](const std::string& file) { run.score = read_score(file); });
+  if (parts == 0) throw Error(out + ": it holds nothing of a run (" + run.missing.front() + ")");
   return run;
 }
 
@@ -221,30 +248,70 @@ int compare_command(const std::vector<std::string>& outs, const Common& common, 
   return 0;
 }
 
-int report_command(const std::vector<std::string>& outs, const Common& common, Console& console) {
-  ordered_json pages = ordered_json::array();
-  for (const std::string& out : outs) {
-    const RunFolder run = load_run(out, common);
-    const std::string dir = out + "/report";
-    write_report(dir,
-                 {run.world, run.recording.log, run.recording.truth, run.estimate, run.score,
-                  resolved_toml(run.scenario), run.scenario.name},
-                 run.scenario.report, console.progress());
-    console.result("report: " + dir + "/index.html");
-    pages.push_back(dir + "/index.html");
+namespace {
+
+// Where the page of a run lies as seen from a folder; "" where there is none.
+std::string link_to(const std::string& run, const std::string& from) {
+  const fs::path page = fs::path(run) / "report/index.html";
+  return fs::exists(page) ? fs::proximate(page, from).generic_string() : "";
+}
+
+// Several runs on one page.
+int report_side_by_side(const std::vector<std::string>& outs, const Common& common, Console& console) {
+  SideBySide all;
+  for (const std::string& out : outs) all.runs.push_back(scored_run(out));
+  all.comparison = compare_runs(all.runs, headline_metrics());
+  all.headline = headline_metrics();
+  const std::vector<size_t> shown = shown_runs(all.runs, all.comparison);
+  for (size_t g = 0; g < shown.size(); ++g) {
+    console.progress()("report: plans", static_cast<double>(g), static_cast<double>(shown.size()));
+    Plate plate;
+    if (shown[g] < outs.size()) {
+      const RunFolder run = load_run(outs[shown[g]], {"", -1, common.assignments});
+      ReportSettings settings = run.scenario.report;
+      settings.range_m = common_range_m(all.runs);
+      plate = plan_plate(run.input(), settings);
+    } else {
+      plate.figure.missing = "none of its runs was scored";
+    }
+    all.plans.push_back(std::move(plate));
   }
-  console.json(ordered_json{{"pages", pages}}.dump());
+  const std::string dir = common.out.empty() ? "comparison" : common.out, file = dir + "/index.html";
+  std::vector<std::string> links;
+  for (const std::string& out : outs) links.push_back(link_to(out, dir));
+  write_text(file, comparison_html(all, links));
+  console.result("report: " + file);
+  console.json(ordered_json{{"pages", {file}}}.dump());
   return 0;
 }
 
-int render_command(const std::string& out, const std::string& view, const Common& common, Console& console) {
+std::optional<Viewpoint> viewpoint_of(const ViewWords& words) {
+  if (words.eye.empty() && words.target.empty()) return {};
+  if (words.eye.size() != 3 || words.target.size() != 3)
+    throw Error("a viewpoint needs both --eye X,Y,Z and --target X,Y,Z, three numbers each, in metres");
+  return Viewpoint{Vec3(words.eye[0], words.eye[1], words.eye[2]),
+                   Vec3(words.target[0], words.target[1], words.target[2]), words.fov_deg * std::acos(-1.0) / 180};
+}
+
+}  // namespace
+
+int report_command(const std::vector<std::string>& outs, const Common& common, Console& console) {
+  if (outs.size() > 1) return report_side_by_side(outs, common, console);
+  const RunFolder run = load_run(outs[0], common);
+  const std::string dir = common.out.empty() ? outs[0] + "/report" : common.out, file = dir + "/index.html";
+  write_report(dir, run.input(), run.scenario.report, console.progress());
+  for (const std::string& m : run.missing) console.result("missing: " + m);
+  console.result("report: " + file);
+  console.json(ordered_json{{"pages", {file}}, {"missing", run.missing}}.dump());
+  return 0;
+}
+
+int render_command(const std::string& out, const std::string& view, const ViewWords& words, const Common& common,
+                   Console& console) {
+  const std::optional<Viewpoint> viewpoint = viewpoint_of(words);
   const RunFolder run = load_run(out, {"", -1, common.assignments});
   const std::string file = common.out.empty() ? view + ".png" : common.out;
-  const Picture picture = render_view(view,
-                                      {run.world, run.recording.log, run.recording.truth, run.estimate, run.score,
-                                       resolved_toml(run.scenario), run.scenario.name},
-                                      run.scenario.report);
-  write_png(file, picture);
+  write_text(file, render_png(view, run.input(), run.scenario.report, viewpoint));
   console.result("picture: " + file);
   console.json(ordered_json{{"picture", file}}.dump());
   return 0;

@@ -26,6 +26,12 @@ struct ScoreInput {
   std::string explain;    // a metric's name, instead of all
 };
 
+/// Where `adit render` is to look from: three numbers each, or none.
+struct ViewWords {
+  std::vector<double> eye, target;
+  double fov_deg = 60;
+};
+
 // Each command returns the exit code; bad input is thrown as Error.
 int run_command(const std::string& scenario, const Common& common, Console& console);
 int world_command(const std::string& scenario, const Common& common, Console& console);
@@ -35,7 +41,8 @@ int map_command(const std::string& recording, const Common& common, Console& con
 int score_command(const ScoreInput& input, const Common& common, Console& console);
 int compare_command(const std::vector<std::string>& outs, const Common& common, Console& console);
 int report_command(const std::vector<std::string>& outs, const Common& common, Console& console);
-int render_command(const std::string& out, const std::string& view, const Common& common, Console& console);
+int render_command(const std::string& out, const std::string& view, const ViewWords& words, const Common& common,
+                   Console& console);
 int list_command(const std::string& what, Console& console);
 int help_command(const std::string& topic, Console& console);
 

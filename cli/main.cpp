@@ -28,6 +28,7 @@ struct Words {
   std::string first, second, world, truth, check, stats, shard;
   adit::ScoreInput score;
   adit::NightlyInput nightly;
+  adit::ViewWords view;
   std::vector<std::string> outs;
 };
 
@@ -54,7 +55,7 @@ int dispatch(CLI::App& app, const Words& w) {
   if (app.got_subcommand("score")) return score_command(w.score, w.common, console);
   if (app.got_subcommand("compare")) return compare_command(w.outs, w.common, console);
   if (app.got_subcommand("report")) return report_command(w.outs, w.common, console);
-  if (app.got_subcommand("render")) return render_command(w.first, w.second, w.common, console);
+  if (app.got_subcommand("render")) return render_command(w.first, w.second, w.view, w.common, console);
   if (app.got_subcommand("convert")) return convert_command(w.first, w.second, w.truth, w.every, console);
   if (app.got_subcommand("rig")) return rig_command(w.first, w.common, console);
   if (app.got_subcommand("nightly")) return nightly_command(w.nightly, w.common, console);
@@ -126,12 +127,18 @@ void add_commands(CLI::App& app, Words& w) {
   CLI::App* compare = app.add_subcommand("compare", "many runs: medians, intervals, paired differences, failures");
   compare->add_option("out", w.outs, "folders of runs")->required();
   add_common(compare, w, false);
-  CLI::App* report = app.add_subcommand("report", "the page of one or more run folders");
+  CLI::App* report =
+      app.add_subcommand("report", "the page of a run (OUT/report), or of several side by side (-o, else comparison/)");
   report->add_option("out", w.outs, "folders of runs")->required();
   add_common(report, w, false);
   CLI::App* render = app.add_subcommand("render", "one picture of a run");
   render->add_option("run", w.first, "folder of a run")->required();
   render->add_option("view", w.second, "one of 'adit list views'")->required();
+  render->add_option("--eye", w.view.eye, "X,Y,Z in metres to look from: cutaway, chamber, interior-1")
+      ->delimiter(',')
+      ->expected(3);
+  render->add_option("--target", w.view.target, "X,Y,Z in metres to look at")->delimiter(',')->expected(3);
+  render->add_option("--fov", w.view.fov_deg, "degrees that the picture is high")->check(CLI::Range(1.0, 150.0));
   add_common(render, w, false);
   CLI::App* convert = app.add_subcommand("convert", "a recording, a path or a cloud in another format");
   convert

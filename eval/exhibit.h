@@ -36,6 +36,7 @@ struct Exhibit {
   std::vector<Spot> spots = {};                                 // worst first
   Ramp ramp = {}, size_ramp = {};                               // of signed errors, for every picture
   Vec2 low_W = Vec2::Zero(), high_W = Vec2::Zero();             // of the mine in plan, with a margin
+  std::optional<Viewpoint> viewpoint = {};                      // of pictures in space, where one is given
 
   bool has_points() const { return !point_W.empty(); }
   bool has_surface() const { return !surface_W.face.empty(); }
@@ -51,23 +52,35 @@ struct Figure {
   std::string caption = {};  // what is seen and how to read it
   std::string alt = {};      // in place of the picture
   Drawing drawing = {};
-  std::string missing = {};  // why there is no drawing; empty if there is
+  std::string missing = {};             // why there is no drawing; empty if there is
+  std::optional<PlanFrame> frame = {};  // of a plan on which places are marked by the page's script
 };
 
 /// Plans.
-Figure error_plan(const Exhibit& exhibit);          // where the map is off: the page's first picture
-Drawing narrow_error_plan(const Exhibit& exhibit);  // the same for narrow screens
-Figure truth_plan(const Exhibit& exhibit);          // Fig. 3: the mine and the path driven
-Figure raw_plan(const Exhibit& exhibit);            // Fig. 3: scan matching alone
-Figure aligned_plan(const Exhibit& exhibit);        // Fig. 3: after the global alignment
-Figure rounds_plan(const Exhibit& exhibit);         // Fig. 2: correspondences by rounds
-Figure grid_plan(const Exhibit& exhibit);           // Fig. 4: occupancy grid
-Figure closures_plan(const Exhibit& exhibit);       // loop closures over the plan
-Figure error_chart(const Exhibit& exhibit);         // error of the path along the way driven
+Figure error_plan(const Exhibit& exhibit);         // where the map is off: the page's first picture
+Figure narrow_error_plan(const Exhibit& exhibit);  // the same for narrow screens
+Figure truth_plan(const Exhibit& exhibit);         // Fig. 3: the mine and the path driven
+Figure raw_plan(const Exhibit& exhibit);           // Fig. 3: scan matching alone
+Figure aligned_plan(const Exhibit& exhibit);       // Fig. 3: after the global alignment
+Figure rounds_plan(const Exhibit& exhibit);        // Fig. 2: correspondences by rounds
+Figure grid_plan(const Exhibit& exhibit);          // Fig. 4: occupancy grid
+Figure closures_plan(const Exhibit& exhibit);      // loop closures over the plan
+Figure error_chart(const Exhibit& exhibit);        // error of the path along the way driven
 /// In space.
 Figure cutaway_view(const Exhibit& exhibit);          // Fig. 5: the mine with its roof lifted off, coloured by error
 Figure chamber_view(const Exhibit& exhibit);          // the same near the worst place, closer
 Figure interior_view(const Exhibit& exhibit, int k);  // Fig. 6: from the path, truth beside map
+Figure coverage_view(const Exhibit& exhibit);         // what of the true rock the rig's beams met
+/// settings.frames views along the path, truth beside map; none where there is none to take.
+struct AlongFrame {
+  double along_m = 0;
+  std::string png = {};  // its picture
+};
+std::vector<AlongFrame> along_frames(const Exhibit& exhibit, const Progress& progress = {});
+/// The frames as an animated PNG; at least one.
+std::string animation_of(const std::vector<AlongFrame>& frames);
+/// The same from the path towards a worst place, `width` wide.
+Picture spot_interior(const Exhibit& exhibit, const Vec3& place_W, int width);
 /// Sections.
 Figure tilt_section(const Exhibit& exhibit);      // Fig. 5: with and without correction of pitch and roll
 Figure spot_view(const Exhibit& exhibit, int k);  // a worst place: plan and section

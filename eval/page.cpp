@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/page.h"
 
+#include "eval/page_script.h"
 #include "eval/page_style.h"
 
 #include <algorithm>
@@ -16,6 +17,19 @@ std::string unit_words(const std::string& unit) {
   if (unit == "m2") return "m²";
   if (unit == "deg") return "°";
   return unit;
+}
+
+// Sections that the page's script fills; hidden where none runs.
+struct LiveSection {
+  const char *id, *title;
+};
+constexpr LiveSection live_sections[] = {
+    {"along", "Along the path"}, {"view", "View in space"}, {"errors-live", "Errors of the map"}};
+
+std::string live_html(const LiveSection& s) {
+  const std::string id = s.id;
+  return "<section id=\"" + id.substr(0, id.find('-')) + "-section\" aria-labelledby=\"" + id +
+         "\" hidden>\n<h2 id=\"" + id + "\">" + s.title + "</h2>\n</section>\n";
 }
 
 std::string plate_html(const Plate& plate, bool big) {
@@ -36,10 +50,19 @@ std::string first_screen(const ReportInput& in, const Plate& hero, const std::ve
     html += "<div><dt>" + escaped(k.label) + "</dt><dd><span class=\"value\">" + escaped(k.value) +
             " <span class=\"unit\">" + escaped(k.unit) + "</span></span> <span class=\"note\">" + escaped(k.note) +
             "</span></dd></div>\n";
-  html += "</dl>\n<nav aria-label=\"Contents\">";
+  html += "</dl>\n";
+  if (!in.missing.empty()) {
+    html += "<div class=\"missing\" role=\"note\"><strong>Not all of the run is there.</strong><ul>";
+    for (const std::string& m : in.missing) html += "<li>" + escaped(m) + "</li>";
+    html += "</ul></div>\n";
+  }
+  html += "<nav aria-label=\"Contents\">";
+  for (const LiveSection& s : live_sections)
+    html += std::string("<a href=\"#") + s.id + "\" hidden>" + s.title + "</a> ";
   for (const Chapter& c : chapters) html += "<a href=\"#" + c.id + "\">" + escaped(c.title) + "</a> ";
   html +=
-      "<a href=\"#scores\">Scores</a> <a href=\"#settings\">Settings</a> <a href=\"#notes\">Notes</a></nav>\n</div>\n";
+      "<a href=\"#passages\">Passages</a> <a href=\"#scores\">Scores</a> <a href=\"#settings\">Settings</a> <a "
+      "href=\"#notes\">Notes</a></nav>\n</div>\n";
   return html + plate_html(hero, false) + "</header>\n";
 }
 
@@ -89,22 +112,40 @@ std::string score_tables(const Score& score) {
   return html;
 }
 
-std::string passage_table(const Score& score) {
-  if (score.passages.empty()) return "";
-  std::vector<PassageScore> rows = score.passages;
+std::string number_cell(double value, int digits = 3) {
+  return "<td class=\"n\" data-v=\"" + (std::isfinite(value) ? std::to_string(value) : "") + "\">" +
+         plain_number(value, digits) + "</td>";
+}
+
+std::string passage_row(const PassageScore& p, const World& world) {
+  const auto k = static_cast<size_t>(p.passage);
+  const double length = k < world.passages.size() ? world.passages[k].length_m : NAN;
+  const double seen = p.observable_m3 > 0 ? p.observable_m3 : NAN, mapped = std::isfinite(seen) ? p.mapped_m3 : NAN;
+  const std::string id = std::to_string(p.passage);
+  return "<tr tabindex=\"0\" data-passage=\"" + id + "\"><td data-v=\"" + id + "\">" + id + "</td>" +
+         number_cell(length) + number_cell(seen, 4) + number_cell(mapped, 4) +
+         number_cell(100 * (mapped - seen) / seen) + number_cell(p.bias_m) + number_cell(p.mae_m) +
+         number_cell(p.p95_m) + number_cell(static_cast<double>(p.n), 9) + "</tr>\n";
+}
+
+std::string passages_html(const ReportInput& in) {
+  std::string html = "<section aria-labelledby=\"passages\"><h2 id=\"passages\">Passages</h2>\n";
+  if (in.score.passages.empty())
+    return html + "<p class=\"missing\">Not shown: there are no passages that the map was scored by.</p></section>\n";
+  std::vector<PassageScore> rows = in.score.passages;
   std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
     return (std::isfinite(a.mae_m) ? a.mae_m : -1) > (std::isfinite(b.mae_m) ? b.mae_m : -1);
   });
-  std::string html = "<details><summary>by passage, worst first (" + std::to_string(rows.size()) +
-                     ")</summary><div class=\"scroll\"><table><thead><tr><th scope=\"col\">passage</th>"
-                     "<th scope=\"col\" class=\"n\">mean error, m</th><th scope=\"col\" class=\"n\">mean distance, "
-                     "m</th><th scope=\"col\" class=\"n\">95 % below, m</th>"
-                     "<th scope=\"col\" class=\"n\">points</th></tr></thead><tbody>\n";
-  for (const PassageScore& p : rows)
-    html += "<tr><td>" + std::to_string(p.passage) + "</td><td class=\"n\">" + plain_number(p.bias_m) +
-            "</td><td class=\"n\">" + plain_number(p.mae_m) + "</td><td class=\"n\">" + plain_number(p.p95_m) +
-            "</td><td class=\"n\">" + std::to_string(p.n) + "</td></tr>\n";
-  return html + "</tbody></table></div></details>\n";
+  html +=
+      "<p class=\"about\">Worst first; a column's head sorts. A row shows its passage on the plan above. Volumes are "
+      "those of the void that could be seen.</p>\n<div class=\"scroll tall\" tabindex=\"0\" role=\"group\" "
+      "aria-label=\"Passages\"><table id=\"passages-table\" class=\"sortable\"><thead><tr>";
+  for (const char* words : {"passage", "length, m", "true volume, m³", "mapped, m³", "error, %", "mean error, m",
+                            "mean distance, m", "95 % below, m", "points"})
+    html += std::string("<th scope=\"col\"") + (html.ends_with("<tr>") ? ">" : " class=\"n\">") + words + "</th>";
+  html += "</tr></thead><tbody>\n";
+  for (const PassageScore& p : rows) html += passage_row(p, in.world);
+  return html + "</tbody></table></div></section>\n";
 }
 
 std::string meta_table(const Score& score) {
@@ -141,24 +182,38 @@ std::string notes_html(const ReportInput& in, const Plate& hero, const std::vect
 
 }  // namespace
 
-std::string page_html(const ReportInput& in, const Plate& hero, const std::vector<Chapter>& chapters) {
+std::string page_head(const std::string& title) {
+  return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+         "content=\"width=device-width, initial-scale=1\">\n<meta http-equiv=\"Content-Security-Policy\" "
+         "content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src '" +
+         std::string(page_script_hash) + "'\">\n<title>" + escaped(title) + "</title>\n<style>" + page_style +
+         "</style>\n</head>\n<body>\n";
+}
+
+std::string page_foot(const std::string& data) {
+  const std::string given = data.empty() ? "" : "<script type=\"application/json\" id=\"data\">" + data + "</script>\n";
+  return given + "<script>" + page_script + "</script>\n</body>\n</html>\n";
+}
+
+std::string page_html(const ReportInput& in, const Plate& hero, const std::vector<Chapter>& chapters,
+                      const std::string& data) {
   std::string html =
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>" +
-      escaped(in.name) + " – adit report</title>\n<style>" + page_style +
-      "</style>\n</head>\n<body>\n<a class=\"skip\" href=\"#main\">Skip to the details</a>\n";
+      page_head(in.name + " – adit report") + "<a class=\"skip\" href=\"#main\">Skip to the details</a>\n";
   html += first_screen(in, hero, chapters) + "<main id=\"main\">\n";
+  for (const LiveSection& s : live_sections) html += live_html(s);
   for (const Chapter& c : chapters) html += chapter_html(c);
+  html += passages_html(in);
   html += "<section aria-labelledby=\"scores\"><h2 id=\"scores\">Scores</h2>\n" + score_tables(in.score) +
-          passage_table(in.score) + meta_table(in.score) + "</section>\n";
+          meta_table(in.score) + "</section>\n";
   html +=
       "<section aria-labelledby=\"settings\"><h2 id=\"settings\">Settings</h2>\n<details><summary>the scenario, every "
       "setting written out</summary><pre tabindex=\"0\">" +
       escaped(in.scenario_toml) + "</pre></details></section>\n";
   html += "<section aria-labelledby=\"notes\">" + notes_html(in, hero, chapters) + "</section>\n</main>\n";
-  return html +
-         "<footer>Made by adit. This page is one file and needs no network; each picture lies beside it as "
-         "PNG.</footer>\n</body>\n</html>\n";
+  html +=
+      "<footer>Made by adit. This page is one file and needs no network; each picture lies beside it as "
+      "PNG.</footer>\n";
+  return html + page_foot(data);
 }
 
 }  // namespace adit

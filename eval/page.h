@@ -30,6 +30,12 @@ struct Chapter {
 };
 
 /// The whole page.
-std::string page_html(const ReportInput& input, const Plate& hero, const std::vector<Chapter>& chapters);
+/// @param data  what its script draws from, as page_data gives it
+std::string page_html(const ReportInput& input, const Plate& hero, const std::vector<Chapter>& chapters,
+                      const std::string& data);
+/// Everything before a page's body: title, policy (no network; no script but ours), style.
+std::string page_head(const std::string& title);
+/// The end of a page: what the script draws from, if anything, and the script.
+std::string page_foot(const std::string& data);
 
 }  // namespace adit

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "eval/exhibit.h"
 #include "eval/page.h"
+#include "eval/page_data.h"
 
 #include <algorithm>
 
@@ -14,7 +15,7 @@ namespace {
 
 std::vector<Chapter> make_chapters(const Exhibit& x, const Progress& progress) {
   std::vector<Chapter> chapters;
-  const int total = 10 + x.settings.interiors + static_cast<int>(x.spots.size());
+  const int total = 11 + x.settings.interiors + static_cast<int>(x.spots.size());
   int done = 0;
   const auto add = [&](Figure figure) {
     chapters.back().plates.push_back({std::move(figure), {}, {}});
@@ -28,6 +29,7 @@ std::vector<Chapter> make_chapters(const Exhibit& x, const Progress& progress) {
   add(chamber_view(x));
   for (int k = 0; k < x.settings.interiors; ++k) add(interior_view(x, k));
   add(tilt_section(x));
+  add(coverage_view(x));
   chapters.push_back({"plans", "Path and plan", {}, Chapter::Columns::first_three});
   add(truth_plan(x));
   add(raw_plan(x));
@@ -59,6 +61,7 @@ Fields fields(ReportSettings& s) {
           {"range_m", &s.range_m, "end of the colour range of signed errors, 0 = chosen by the errors", 0, 100},
           {"interiors", &s.interiors, "views from the path", 0, 20},
           {"places", &s.places, "worst places with a close-up", 0, 20},
+          {"frames", &s.frames, "of the animated sequence along the path, 0 = none", 0, 100},
           {"exaggeration", &s.exaggeration, "of heights, in the view of the whole mine", 1, 20}};
 }
 
@@ -71,8 +74,13 @@ void write_report(const std::string& dir, const ReportInput& input, const Report
   for (Chapter& c : chapters)
     for (Plate& p : c.plates) plates.push_back(&p);
   set_plates(dir, plates, progress);
-  hero.narrow_svg = to_svg(narrow_error_plan(x), hero.figure.alt);
-  write_text(dir + "/index.html", page_html(input, hero, chapters));
+  const std::vector<AlongFrame> frames = along_frames(x, progress);
+  if (!frames.empty()) write_text(dir + "/along.png", animation_of(frames));
+  const Figure narrow = narrow_error_plan(x);
+  hero.narrow_svg = to_svg(narrow.drawing, hero.figure.alt);
+  progress("report: page", 0, 1);
+  write_text(dir + "/index.html", page_html(input, hero, chapters, page_data(x, hero.figure, narrow, frames)));
+  progress("report: page", 1, 1);
 }
 
 }  // namespace adit

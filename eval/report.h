@@ -9,6 +9,7 @@
 #include "eval/score.h"
 
 #include <string>
+#include <vector>
 
 namespace adit {
 
@@ -21,13 +22,21 @@ struct ReportInput {
   const Score& score;
   std::string scenario_toml;
   std::string name;
+  std::vector<std::string> missing = {};  // parts that the run's folder lacks, one sentence each
+};
+
+/// Where a picture in space is taken from, in W, instead of the place that it has by itself.
+struct Viewpoint {
+  Vec3 eye, target;
+  double fov_rad = 1;
 };
 
 struct ReportSettings {
   int width_px = 1200;      // of a full-width picture
   double range_m = 0;       // end of the colour range of signed errors; 0 = chosen by the errors
   int interiors = 3;        // views from the path
-  int places = 6;           // worst places with a close-up
+  int places = 10;          // worst places with a close-up
+  int frames = 24;          // of the animated sequence along the path
   double exaggeration = 2;  // of heights, in the view of the whole mine
 };
 Fields fields(ReportSettings& settings);

@@ -52,17 +52,22 @@ float hash(vec3 p) {
   n ^= n >> 15; n *= 2246822519u; n ^= n >> 13;
   return float(n >> 8) / 16777216.0;
 }
-float noise(vec3 p) {
-  vec3 i = floor(p), f = p - i;
-  f = f * f * (3.0 - 2.0 * f);
-  float a = mix(mix(hash(i), hash(i + vec3(1, 0, 0)), f.x), mix(hash(i + vec3(0, 1, 0)), hash(i + vec3(1, 1, 0)), f.x), f.y);
-  float b = mix(mix(hash(i + vec3(0, 0, 1)), hash(i + vec3(1, 0, 1)), f.x),
-                mix(hash(i + vec3(0, 1, 1)), hash(i + vec3(1, 1, 1)), f.x), f.y);
-  return mix(a, b, f.z);
+// Slope and value of a smooth noise.
+vec4 noise(vec3 p) {
+  vec3 i = floor(p), f = p - i, s = f * f * (3.0 - 2.0 * f), ds = 6.0 * f * (1.0 - f);
+  float a = hash(i), b = hash(i + vec3(1, 0, 0)), c = hash(i + vec3(0, 1, 0)), d = hash(i + vec3(1, 1, 0)),
+        e = hash(i + vec3(0, 0, 1)), g = hash(i + vec3(1, 0, 1)), h = hash(i + vec3(0, 1, 1)), k = hash(i + vec3(1, 1, 1));
+  float x = b - a, y = c - a, z = e - a, xy = a - b - c + d, yz = a - c - e + h, zx = a - b - e + g,
+        xyz = b + c - a - d + e - g - h + k;
+  return vec4(ds * vec3(x + xy * s.y + zx * s.z + xyz * s.y * s.z, y + yz * s.z + xy * s.x + xyz * s.z * s.x,
+                        z + zx * s.x + yz * s.y + xyz * s.x * s.y),
+              a + x * s.x + y * s.y + z * s.z + xy * s.x * s.y + yz * s.y * s.z + zx * s.z * s.x + xyz * s.x * s.y * s.z);
 }
-float grain(vec3 p) {
-  float wide = 0.45 * noise(2.3 * p) + 0.3 * noise(5.1 * p + 7.0) + 0.25 * noise(14.0 * p + 31.0);
-  return wide;
+// Of the finest the slope is that over 3 cm.
+vec4 grain(vec3 p) {
+  vec4 wide = noise(2.3 * p), mean = noise(5.1 * p + 7.0), fine = noise(14.0 * p + 31.0);
+  return vec4(0.45 * 2.3 * wide.xyz + 0.3 * 5.1 * mean.xyz + 0.25 * 14.0 * 0.8 * fine.xyz,
+              0.45 * wide.w + 0.3 * mean.w + 0.25 * fine.w);
 }
 
 void main() {
@@ -77,11 +82,10 @@ void main() {
   if (!dots) {
     vec3 n = normalize(n_W);
     if (rock > 0.0) {
-      float h = 0.03, g = grain(p_W);
-      vec3 slope = vec3(grain(p_W + vec3(h, 0, 0)), grain(p_W + vec3(0, h, 0)), grain(p_W + vec3(0, 0, h))) - g;
+      vec4 g = grain(p_W);
       float near = 1.0 / (1.0 + 0.02 * distance_m * distance_m);
-      n = normalize(n - rock * near * 0.10 * (slope - n * dot(slope, n)) / h);
-      base *= mix(1.0, 0.62 + 0.76 * g, rock);
+      n = normalize(n - rock * near * 0.10 * (g.xyz - n * dot(g.xyz, n)));
+      base *= mix(1.0, 0.62 + 0.76 * g.w, rock);
     }
     if (dot(n, to_eye) < 0.0) n = -n;
     float head = dot(n, to_eye);

@@ -114,7 +114,7 @@ void finish_panel(Figure& figure, std::pair<Drawing, PlanFrame>& sheet) {
 namespace {
 
 // The plan of errors, for a page width of width_px; `small` sets legend and marks for a telephone.
-Drawing error_drawing(const Exhibit& x, double width_px, bool small) {
+void draw_errors(Figure& figure, const Exhibit& x, double width_px, bool small) {
   const double type = small ? 15 : 17;
   auto [drawing, frame] = plan_sheet(x.low_W, x.high_W, width_px,
                                      small ? std::array{46.0, 132.0, 6.0, 34.0} : std::array{64.0, 84.0, 14.0, 40.0});
@@ -144,14 +144,15 @@ Drawing error_drawing(const Exhibit& x, double width_px, bool small) {
   add_key(drawing, keys + Vec2(next, 0), ink::text, "mapped path", type);
   add_scale_bar(drawing, small ? Vec2(keys.x(), 124) : keys + Vec2(0, 42), frame.px_per_m, small ? 130 : 220, type);
   add_north(drawing, {drawing.width_px - 34, 26}, 34);
-  return drawing;
+  figure.drawing = std::move(drawing);
+  figure.frame = frame;
 }
 
 }  // namespace
 
 Figure error_plan(const Exhibit& x) {
   Figure figure{.name = "plan", .title = "Where the map is off"};
-  figure.drawing = error_drawing(x, x.settings.width_px, false);
+  draw_errors(figure, x, x.settings.width_px, false);
   figure.caption =
       x.has_points()
           ? "True walls, and over them the map's points (laid by the best rigid fit) coloured by their mean distance "
@@ -165,8 +166,10 @@ Figure error_plan(const Exhibit& x) {
   return figure;
 }
 
-Drawing narrow_error_plan(const Exhibit& x) {
-  return error_drawing(x, 540, true);
+Figure narrow_error_plan(const Exhibit& x) {
+  Figure figure{.name = "plan", .title = "Where the map is off"};
+  draw_errors(figure, x, 540, true);
+  return figure;
 }
 
 Figure truth_plan(const Exhibit& x) {
@@ -339,7 +342,8 @@ Figure closures_plan(const Exhibit& x) {
     if (!truth.covers(t)) return {};
     return Vec2(truth.at(t).translation().head<2>());
   };
-  int n_right = 0, n_wrong = 0, n_left_out = 0;
+  const Colour unsure = rgb(0xcc79a7), left_out = rgb(0x9a9a9a);
+  int n_right = 0, n_wrong = 0, n_unsure = 0, n_left_out = 0;
   const int poses = static_cast<int>(x.path_W.size());
   for (const Closure& c : closures) {
     if (c.i < 0 || c.j < 0 || c.i >= poses || c.j >= poses) continue;
@@ -347,20 +351,22 @@ Figure closures_plan(const Exhibit& x) {
     const bool right = !a || !b || (*a - *b).norm() < 3;
     const Vec2 p = frame(x.path_W.X_WB[c.i].translation().head<2>()),
                q = frame(x.path_W.X_WB[c.j].translation().head<2>());
-    const Colour colour = !c.accepted ? rgb(0x9a9a9a) : right ? ink::good : ink::raw;
-    ++(!c.accepted ? n_left_out : right ? n_right : n_wrong);
+    const Colour colour = c.ambiguous ? unsure : !c.accepted ? left_out : right ? ink::good : ink::raw;
+    ++(c.ambiguous ? n_unsure : !c.accepted ? n_left_out : right ? n_right : n_wrong);
     drawing.add(Line{{p, q}, colour, c.accepted && !right ? 3.0 : 2.0});
     drawing.add(Disc{.centre = (p + q) / 2, .radius_px = c.accepted && !right ? 6.0 : 3.0, .fill = colour});
   }
   double at = 64;
   at += add_key(drawing, {at, 32}, ink::good, "accepted, right place: " + std::to_string(n_right), 17);
   at += add_key(drawing, {at, 32}, ink::raw, "accepted, wrong place: " + std::to_string(n_wrong), 17);
-  add_key(drawing, {at, 32}, rgb(0x9a9a9a), "not accepted: " + std::to_string(n_left_out), 17);
+  at += add_key(drawing, {at, 32}, unsure, "ambiguous: " + std::to_string(n_unsure), 17);
+  add_key(drawing, {at, 32}, left_out, "not accepted: " + std::to_string(n_left_out), 17);
   add_axes(drawing, frame, 16);
   figure.drawing = std::move(drawing);
   figure.caption =
-      "Pairs of scans that the map takes for the same place. A place is right when the true poses lie within 3 m.";
-  figure.alt = "Plan with the loop closures, right ones and wrong ones told apart";
+      "Pairs of scans that the map takes for the same place. A place is right when the true poses lie within 3 m; "
+      "ambiguous are those that the map itself says could as well be elsewhere.";
+  figure.alt = "Plan with the loop closures: right, wrong, ambiguous and not accepted ones told apart";
   return figure;
 }
 

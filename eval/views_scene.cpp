@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "eval/exhibit.h"
 #include "eval/outline.h"
-#include "eval/scene.h"
+#include "eval/views.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,11 +12,7 @@
 
 namespace adit {
 
-namespace {
-
-// The faces of the mapped surface near a place (all without one), coloured by error; heights stretched about z0_m.
-Skin error_skin(const Exhibit& x, double stretch = 1, double z0_m = 0,
-                const std::function<bool(const Vec3&)>& near = {}) {
+Skin error_skin(const Exhibit& x, double stretch, double z0_m, const Near& near) {
   Skin skin = skin_of(
       x.surface_W, [&](std::uint32_t v, Label) { return x.ramp.colour(x.surface_error_m[v]); },
       [&](size_t f) { return !near || near(x.surface_W.corner(f, 0)); });
@@ -25,9 +21,7 @@ Skin error_skin(const Exhibit& x, double stretch = 1, double z0_m = 0,
   return skin;
 }
 
-// Map points coloured by error; those on the roof are left out where the roof is to be lifted off.
-Dots error_dots(const Exhibit& x, bool with_roof, double stretch = 1, double z0_m = 0,
-                const std::function<bool(const Vec3&)>& near = {}) {
+Dots error_dots(const Exhibit& x, bool with_roof, double stretch, double z0_m, const Near& near) {
   Dots dots;
   for (size_t k = 0; k < x.point_W.size(); ++k) {
     if (!with_roof && x.point_label[k] == Label::roof) continue;
@@ -52,6 +46,21 @@ Colour rock_colour(Label label) {
       return label >= Label::rubble ? thing_colour(label) : rgb(0x8a8a88);
   }
 }
+
+Camera camera_at(const Viewpoint& viewpoint) {
+  Camera camera;
+  camera.eye = viewpoint.eye;
+  camera.target = viewpoint.target;
+  camera.fov_rad = viewpoint.fov_rad;
+  const double reach = (viewpoint.target - viewpoint.eye).norm();
+  camera.near_m = std::max(0.05, 0.005 * reach);
+  camera.far_m = 500 + 10 * reach;
+  // Straight down or up: north is above.
+  if (std::abs((viewpoint.target - viewpoint.eye).normalized().z()) > 0.999) camera.up = Vec3::UnitY();
+  return camera;
+}
+
+namespace {
 
 // An orthographic camera that looks down at an angle from the south and holds a box, and the picture's height for a
 // width.
@@ -86,6 +95,14 @@ Framing frame_box(const Vec3& low, const Vec3& high, double azimuth_rad, double 
   framing.camera.near_m = 1;
   framing.camera.far_m = 60 + most.z() - least.z();
   return framing;
+}
+
+// The viewpoint that was asked for instead of the view's own.
+void use_viewpoint(Framing& framing, const Exhibit& x) {
+  if (!x.viewpoint) return;
+  framing.camera = camera_at(*x.viewpoint);
+  framing.height_px = 2 * (x.settings.width_px * 9 / 32);
+  framing.px_per_m = 0;
 }
 
 Drawing sheet_of(const Picture& picture) {
@@ -158,7 +175,8 @@ Figure cutaway_view(const Exhibit& x) {
   const double stretch = x.settings.exaggeration;
   const auto [z_low, z_high] = heights(x);
   const Vec3 low(x.low_W.x(), x.low_W.y(), z_low), high(x.high_W.x(), x.high_W.y(), z_low + stretch * (z_high - z_low));
-  const Framing framing = frame_box(low, high, -1.75, 0.95, x.settings.width_px, {70, 60});
+  Framing framing = frame_box(low, high, -1.75, 0.95, x.settings.width_px, {70, 60});
+  use_viewpoint(framing, x);
   Scene scene;
   if (x.has_surface()) {
     scene.skins.push_back(error_skin(x, stretch, z_low));
@@ -171,12 +189,76 @@ Figure cutaway_view(const Exhibit& x) {
   add_spot_flags(figure.drawing, x.spots, framing.camera, stretch, z_low);
   add_colour_bar(figure.drawing, x.ramp, {36, 10}, 320, 18);
   add_compass(figure.drawing, framing.camera, {figure.drawing.width_px - 60, 90}, 34);
-  add_scale_bar(figure.drawing, {24, figure.drawing.height_px - 22}, framing.px_per_m, 260, 18, height_note(stretch));
+  if (!x.viewpoint)
+    add_scale_bar(figure.drawing, {24, figure.drawing.height_px - 22}, framing.px_per_m, 260, 18, height_note(stretch));
   figure.caption = std::string("The mapped ") + (x.has_surface() ? "surface" : "points") +
                    " seen from the south, without the roof and without the walls that would hide the inside. Grey lies "
                    "where the rock is; "
                    "red stands out into the true void, blue lies inside the true rock. Numbers mark the worst places.";
   figure.alt = "Oblique view of the mapped mine without its roof, coloured by signed error, worst places numbered";
+  return figure;
+}
+
+Figure coverage_view(const Exhibit& x) {
+  Figure figure{.name = "coverage", .title = "What the rig could see"};
+  const Mesh& mesh = x.input.world.mesh;
+  const auto& hits = x.input.score.face_hits;
+  if (!x.has_world() || hits.size() != mesh.face.size()) {
+    figure.missing = "it is not known which of the true rock the beams met";
+    return figure;
+  }
+  const Ramp ramp{Ramp::Kind::sequential, 0, 8, "beams that met the rock", "powers of 2"};
+  const Colour unseen = rgb(0x3b6fb6);
+  // Each face of one colour: corners are not shared.
+  const auto skin_of_faces = [&](bool roof) {
+    Skin skin;
+    for (size_t f = 0; f < mesh.face.size(); ++f) {
+      if ((label_of(mesh, f) == Label::roof) != roof) continue;
+      const Colour c = hits[f] == 0 ? unseen : ramp.colour(std::log2(1.0 + hits[f]));
+      const Eigen::Vector3f n = mesh.normal(f).cast<float>();
+      const auto first = static_cast<std::uint32_t>(skin.p.size());
+      for (int k = 0; k < 3; ++k) {
+        skin.p.push_back(mesh.corner(f, k).cast<float>());
+        skin.normal.push_back(n);
+        skin.colour.push_back(c);
+      }
+      skin.face.push_back({first, first + 1, first + 2});
+    }
+    return skin;
+  };
+  double seen = 0, all = 0;
+  for (size_t f = 0; f < mesh.face.size(); ++f) {
+    const double area = mesh.area(f);
+    all += area;
+    if (hits[f]) seen += area;
+  }
+  const auto [z_low, z_high] = heights(x);
+  const Vec3 low(x.low_W.x(), x.low_W.y(), z_low), high(x.high_W.x(), x.high_W.y(), z_high);
+  const Framing framing = frame_box(low, high, -1.75, 1.2, x.settings.width_px, {70, 20});
+  Drawing drawing;
+  drawing.width_px = x.settings.width_px;
+  drawing.height_px = 2 * framing.height_px;
+  for (const bool roof : {false, true}) {
+    Scene scene;
+    scene.skins.push_back(skin_of_faces(roof));
+    if (!roof) scene.skins.back().sides = Skin::Sides::inner;
+    const double top = roof ? framing.height_px : 0;
+    drawing.add(Layer{take_picture(scene, framing.camera, x.settings.width_px, framing.height_px),
+                      {0, top},
+                      {drawing.width_px, top + framing.height_px}});
+    drawing.add(Words{{drawing.width_px - 30, top + 34},
+                      roof ? "roof, seen through the rock above it" : "floor and ribs, roof lifted off",
+                      {.size_px = 18, .colour = ink::text, .anchor = Anchor::end, .halo_px = 2}});
+  }
+  add_colour_bar(drawing, ramp, {36, 10}, 320, 18);
+  add_key(drawing, {400, 34}, unseen, "met by no beam", 18);
+  figure.drawing = std::move(drawing);
+  figure.caption =
+      "The true rock by how many beams, free of noise, met it at a usable angle (each step of the bar doubles them): " +
+      plain_number(100 * seen / all) + " % of " + plain_number(all, 4) +
+      " m² were met. What no beam met, no mapper can know.";
+  figure.alt =
+      "Two oblique views of the true mine, floor with ribs and roof, coloured by the number of beams that met them";
   return figure;
 }
 
@@ -198,6 +280,7 @@ Figure chamber_view(const Exhibit& x) {
   Framing framing = frame_box(low, high, -1.9, 0.75, x.settings.width_px, {70, 50});
   framing.camera.eye += 2 * radius * (framing.camera.eye - framing.camera.target).normalized();
   framing.camera.far_m += 6 * radius;
+  use_viewpoint(framing, x);
   Scene scene;
   if (x.has_surface()) {
     scene.skins.push_back(error_skin(x, 1, 0, near));
@@ -224,125 +307,10 @@ Figure chamber_view(const Exhibit& x) {
   add_spot_flags(figure.drawing, std::span(x.spots).first(1), framing.camera, 1, 0);
   add_colour_bar(figure.drawing, x.ramp, {36, 10}, 320, 18);
   add_compass(figure.drawing, framing.camera, {figure.drawing.width_px - 60, 90}, 34);
-  add_scale_bar(figure.drawing, {24, figure.drawing.height_px - 22}, framing.px_per_m, 260, 18);
+  if (!x.viewpoint) add_scale_bar(figure.drawing, {24, figure.drawing.height_px - 22}, framing.px_per_m, 260, 18);
   figure.caption = "The map within " + plain_number(radius) +
                    " m of the worst place, at true proportions. The blue line is the mapped path.";
   figure.alt = "Oblique close view of the mapped surface around the worst place, coloured by signed error";
-  return figure;
-}
-
-namespace {
-
-// A place on the path from which the way ahead is long: near the share (k + 1/2) / n of the way driven.
-struct Lookout {
-  Vec3 eye, ahead;
-  double along_m;
-};
-std::optional<Lookout> lookout(const Exhibit& x, int k) {
-  const Trajectory& path = x.input.truth.drive.path.empty() ? x.path_W : x.input.truth.drive.path;
-  if (path.size() < 2) return {};
-  const std::vector<double> along = distance_along(path);
-  const double total = along.back(), wanted = total * (k + 0.5) / std::max(1, x.settings.interiors);
-  std::optional<Lookout> best;
-  double best_view = -1;
-  for (double d = -0.06 * total; d <= 0.06 * total; d += std::max(0.5, 0.004 * total)) {
-    const double at = std::clamp(wanted + d, 0.0, total);
-    const auto i = std::min<size_t>(
-        path.size() - 1, static_cast<size_t>(std::lower_bound(along.begin(), along.end(), at) - along.begin()));
-    const auto j = std::min<size_t>(
-        path.size() - 1, static_cast<size_t>(std::lower_bound(along.begin(), along.end(), at + 4) - along.begin()));
-    const Vec3 eye = path.X_WB[i].translation() + Vec3(0, 0, 1.35);
-    Vec3 way = path.X_WB[i].rotation() * Vec3::UnitX();
-    if (j > i && (path.X_WB[j].translation() - path.X_WB[i].translation()).norm() > 1)
-      way = path.X_WB[j].translation() - path.X_WB[i].translation();
-    way.normalize();
-    const double view = x.caster ? std::min(25.0, x.caster->nearest(Ray{eye, way, 100}).range_m) : 1;
-    if (view > best_view + 1e-9) best_view = view, best = Lookout{eye, way, along[i]};
-  }
-  return best;
-}
-
-Picture see(Scene scene, const Camera& camera, int width, int height) {
-  scene.light = Light::headlamp;
-  scene.background = rgb(0x0d0d0e);
-  return take_picture(scene, camera, width, height);
-}
-
-void add_plate(Drawing& drawing, double left, const std::string& words) {
-  const double w = text_width(words, 20, true) + 24;
-  drawing.add(Area{{{{left, 0}, {left + w, 0}, {left + w, 36}, {left, 36}}}, {0, 0, 0, 170}});
-  drawing.add(Words{{left + 12, 25}, words, {.size_px = 20, .colour = ink::white, .bold = true}});
-}
-
-// A staff of one metre that stands on the floor ahead, so that sizes can be read in perspective.
-void add_staff(Skin& skin, const Exhibit& x, const Lookout& from) {
-  if (!x.caster) return;
-  const Vec3 level = Vec3(from.ahead.x(), from.ahead.y(), 0).normalized(), side(level.y(), -level.x(), 0);
-  const Vec3 top = from.eye + 4.5 * level + 0.9 * side;
-  const Hit hit = x.caster->nearest(Ray{top, -Vec3::UnitZ(), 5});
-  if (hit.face < 0) return;
-  const Vec3 foot = top - Vec3(0, 0, hit.range_m);
-  for (int k = 0; k < 5; ++k) {
-    const Skin piece = tube({foot + Vec3(0, 0, 0.2 * k), foot + Vec3(0, 0, 0.2 * (k + 1))}, 0.025,
-                            k % 2 ? rgb(0xf0f0f0) : rgb(0xe69f00));
-    append(skin, piece);
-  }
-}
-
-}  // namespace
-
-Figure interior_view(const Exhibit& x, int k) {
-  const std::string number = std::to_string(k + 1);
-  Figure figure{.name = "interior-" + number, .title = "From the path, " + number};
-  const auto from = lookout(x, k);
-  if (!from || (!x.has_surface() && !x.has_points())) {
-    figure.missing = !from ? "there is no path to look from" : "the map has neither a surface nor points";
-    return figure;
-  }
-  const int width = x.settings.width_px / 2 - 4, height = width * 5 / 8;
-  Camera camera;
-  camera.eye = from->eye;
-  camera.target = from->eye + from->ahead - Vec3(0, 0, 0.06);
-  camera.fov_rad = 1.15;
-  camera.near_m = 0.08;
-  camera.far_m = 150;
-  // Beyond it the lamp shows nothing.
-  const auto near = [&](const Vec3& p) { return (p - from->eye).norm() < 80; };
-  Scene truth, map;
-  Skin staff;
-  add_staff(staff, x, *from);
-  if (x.has_world()) {
-    const Mesh& mesh = x.input.world.mesh;
-    truth.skins.push_back(skin_of(
-        mesh, [](std::uint32_t, Label label) { return rock_colour(label); },
-        [&](size_t f) { return near(mesh.corner(f, 0)); }));
-    truth.skins.back().rock = 1;
-    truth.skins.push_back(staff);
-  }
-  if (x.has_surface())
-    map.skins.push_back(error_skin(x, 1, 0, near));
-  else
-    map.dots.push_back(error_dots(x, true, 1, 0, near));
-  map.skins.push_back(staff);
-  Drawing drawing;
-  drawing.width_px = 2 * width + 8;
-  drawing.height_px = height;
-  const double right = width + 8.0;
-  drawing.add(
-      Layer{see(truth, camera, width, height), {0, 0}, {static_cast<double>(width), static_cast<double>(height)}});
-  drawing.add(Layer{see(map, camera, width, height), {right, 0}, {right + width, static_cast<double>(height)}});
-  add_plate(drawing, 0, "the mine");
-  add_plate(drawing, right, std::string("the map") + (x.has_surface() ? "" : " (points)") + ", coloured by error");
-  const double bar = 250, corner = drawing.width_px - bar - 40, top = drawing.height_px - 64;
-  drawing.add(Area{
-      {{{corner, top}, {drawing.width_px, top}, {drawing.width_px, drawing.height_px}, {corner, drawing.height_px}}},
-      {243, 243, 240, 225}});
-  add_colour_bar(drawing, x.ramp, {corner + 22, top}, bar, 14);
-  figure.drawing = drawing;
-  figure.caption = plain_number(from->along_m, 4) +
-                   " m along the path: the true mine on the left, the map from the same place on the right. "
-                   "The striped staff is 1 m high.";
-  figure.alt = "View along a passage from the path, the true mine beside the map coloured by signed error";
   return figure;
 }
 

@@ -221,10 +221,16 @@ Figure spot_view(const Exhibit& x, int k) {
   add_scale_bar(drawing, {24, drawing.height_px - 12}, frame.px_per_m, 160, 17);
   add_scale_bar(drawing, {left, 40 + section.frame.height_px() + 40}, section.frame.px_per_m, 160, 17);
   add_colour_bar(drawing, x.ramp, {left + 24, 40 + section.frame.height_px() + 70}, 340, 17);
+  const int inside_px = 2 * ((x.settings.width_px - 48) / 2);
+  if (const Picture inside = spot_interior(x, spot.p_W, inside_px); !inside.empty()) {
+    const double top = drawing.height_px;
+    drawing.add(Layer{inside, {24, top}, {24.0 + inside.width, top + inside.height}});
+    drawing.height_px = 2 * std::ceil((top + inside.height + 24) / 2);
+  }
   figure.drawing = std::move(drawing);
   figure.caption = "At (" + plain_number(spot.p_W.x(), 4) + ", " + plain_number(spot.p_W.y(), 4) +
-                   ") m: " + spot.words + ". Black: the true walls.";
-  figure.alt = "Close plan and cross-section of worst place " + number +
+                   ") m: " + spot.words + ". Black: the true walls. Below: from the path, the place ringed.";
+  figure.alt = "Close plan, cross-section and view from the path of worst place " + number +
                " with the map's points coloured by signed error over the true walls";
   return figure;
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double square_m = 2, apart_m = 10;
 constexpr std::int64_t least_points = 20;
-constexpr size_t most_places = 5;
+constexpr size_t most_places = 10;
 
 }  // namespace
 

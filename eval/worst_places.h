@@ -14,7 +14,7 @@ namespace adit {
 std::vector<PassageScore> passage_scores(const LaidPoints& laid, const Mesh& mesh, const PassageMap& passages);
 
 /// Where the mean absolute error is largest: the surface is parted into squares of 2 m of the plan; squares with fewer
-/// than 20 points are left out; at most five, at least 10 m apart.
+/// than 20 points are left out; at most ten, at least 10 m apart.
 std::vector<WorstPlace> worst_places(const LaidPoints& laid, const PassageMap& passages);
 
 }  // namespace adit

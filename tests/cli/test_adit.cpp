@@ -164,6 +164,46 @@ TEST_F(TinyRun, ScoringAndReportingAgainGivesTheSameBytes) {
   for (const auto& [file, bytes] : bytes_of(out_)) EXPECT_TRUE(before.at(file) == bytes) << file;
 }
 
+TEST_F(TinyRun, AFolderWithPartsMissingGivesAPageThatSaysWhich) {
+  for (const std::string part : {"world", "recording", "map", "score.json"}) {
+    const std::string dir = fresh_folder("lacking");
+    fs::copy(out_, dir, fs::copy_options::recursive);
+    fs::remove_all(dir + "/" + part);
+    const Answer said = adit_says("report --json " + dir + " --set report.places=1 --set report.frames=0");
+    EXPECT_EQ(said.exit_code, 0) << part << said.err;
+    const nlohmann::json json = nlohmann::json::parse(said.out);
+    EXPECT_EQ(json["missing"].empty(), part == "score.json") << part;  // which is computed again
+    const std::string html = read_text(dir + "/report/index.html");
+    EXPECT_EQ(html.find("Not all of the run is there") == std::string::npos, part == "score.json") << part;
+    fs::remove_all(dir);
+  }
+  const std::string dir = fresh_folder("cut");
+  fs::copy(out_, dir, fs::copy_options::recursive);
+  fs::resize_file(dir + "/map/points.ply", 1000);
+  const Answer said = adit_says("report --json " + dir + " --set report.frames=0");
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_THAT(nlohmann::json::parse(said.out)["missing"][0], HasSubstr("points.ply"));
+  fs::remove_all(dir);
+}
+
+TEST_F(TinyRun, TwoFoldersStandSideBySideOnOnePage) {
+  const std::string dir = fresh_folder("beside");
+  const Answer said = adit_says("report --quiet " + out_ + " " + out_ + " -o " + dir);
+  EXPECT_EQ(said.exit_code, 2);  // one seed twice in one group
+  fs::create_directories(dir);
+  fs::copy(out_, dir + "/b", fs::copy_options::recursive);
+  std::string toml = read_text(out_ + "/scenario.toml");
+  toml.replace(toml.find("interiors = "), 12, "interiors = 1");
+  write_text(dir + "/b/scenario.toml", toml);
+  const Answer two = adit_says("report --quiet " + out_ + " " + dir + "/b -o " + dir + "/page");
+  EXPECT_EQ(two.exit_code, 0) << two.err;
+  const std::string html = read_text(dir + "/page/index.html");
+  EXPECT_THAT(html, HasSubstr("2 runs side by side"));
+  EXPECT_THAT(html, HasSubstr("href=\"../b/report/index.html\""));
+  EXPECT_THAT(html, HasSubstr("aria-label=\"Plan of the mine"));
+  fs::remove_all(dir);
+}
+
 TEST_F(TinyRun, SomebodysPartsScoreAsTheWholeMapDoes) {
   const std::string dir = fresh_folder("parts");
   const std::string truth = " --world " + out_ + "/world --truth " + out_ + "/recording/truth.h5 --quiet -o " + dir;

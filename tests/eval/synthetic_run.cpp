@@ -155,6 +155,8 @@ void score(SyntheticRun& run, const Caster& caster) {
                        {0, 0, 0}});
   }
   s.worst = {{worst, 1, 900, -0.3, 0.31}, {Vec3(12, 20, 0), 2, 800, 0.2, 0.22}};
+  s.face_hits.assign(run.world.mesh.face.size(), 3);
+  for (size_t f = 0; f < s.face_hits.size(); f += 5) s.face_hits[f] = 0;
   s.passages = {{0, 9000, 0.01, 0.03, 0.1}, {1, 9000, -0.1, 0.2, 0.4}};
   s.metrics = {{"trajectory.se3.ate_xy_rmse_m", 0.214, "m", Better::lower, 1264, ""},
                {"map.se3.mae_m", 0.061, "m", Better::lower, 151000, ""},

@@ -30,6 +30,7 @@ ReportSettings small_settings() {
   s.width_px = 600;
   s.interiors = 1;
   s.places = 2;
+  s.frames = 2;
   return s;
 }
 
@@ -39,7 +40,10 @@ size_t count(const std::string& text, const std::string& part) {
   return n;
 }
 
+// Without the pictures' bytes and without the page's own script.
 std::string without_pictures(std::string html) {
+  if (const size_t script = html.rfind("<script>"); script != std::string::npos)
+    html.erase(script, html.rfind("</script>") + 9 - script);
   for (size_t at = html.find("base64,"); at != std::string::npos; at = html.find("base64,", at + 7))
     html.erase(at + 7, html.find('"', at) - at - 7);
   return html;
@@ -136,12 +140,13 @@ TEST_F(Report, EveryFigureIsThereWithAlternativeTextAndItsPng) {
   write_report(folder.name, run().input(), small_settings());
   const std::string html = without_pictures(read_text(folder.name + "/index.html"));
   for (const std::string name : {"plan", "truth", "raw", "aligned", "rounds", "grid", "closures", "errors", "cutaway",
-                                 "chamber", "tilt", "interior-1", "spot-1", "spot-2"}) {
+                                 "chamber", "tilt", "coverage", "interior-1", "spot-1", "spot-2"}) {
     EXPECT_EQ(count(html, "<figure id=\"" + name + "\""), 1u) << name;
     EXPECT_TRUE(fs::exists(folder.name + "/" + name + ".png")) << name;
   }
-  EXPECT_EQ(count(html, "<figure id="), 14u);
-  EXPECT_EQ(count(html, "role=\"img\" aria-label=\""), 15u);  // the first one twice, for narrow screens too
+  EXPECT_TRUE(fs::exists(folder.name + "/along.png"));
+  EXPECT_EQ(count(html, "<figure id="), 15u);
+  EXPECT_EQ(count(html, "role=\"img\" aria-label=\""), 16u);  // the first one twice, for narrow screens too
   EXPECT_EQ(count(html, "aria-label=\"\""), 0u);
   EXPECT_EQ(count(html, "Not shown:"), 0u);
 }
@@ -171,7 +176,8 @@ TEST_F(Report, NamesAndSettingsAreEscaped) {
       odd.world, odd.log, odd.truth, odd.estimate, odd.score, "name = \"<script>alert(2)</script>\"", "<script>\"'&"};
   write_report(folder.name, in, small_settings());
   const std::string html = without_pictures(read_text(folder.name + "/index.html"));
-  EXPECT_EQ(count(html, "<script"), 0u);
+  EXPECT_EQ(count(html, "<script"), 1u);  // the data, which no browser runs
+  EXPECT_NE(html.find("<script type=\"application/json\""), std::string::npos);
   EXPECT_GE(count(html, "&lt;script&gt;"), 5u);
 }
 
@@ -223,6 +229,26 @@ TEST_F(Report, AnUnknownViewIsAnErrorThatListsThoseThereAre) {
     }
   }
   EXPECT_THROW(render_view("spot-9", run().input(), small_settings()), Error);  // there are two
+}
+
+TEST_F(Report, AViewpointIsTakenByPicturesInSpaceAndRefusedByOthers) {
+  const auto from = [&](const Vec3& eye, const std::string& view) {
+    return render_view(view, run().input(), small_settings(), Viewpoint{eye, Vec3(0, -20, 1), 0.9});
+  };
+  const Picture near = from(Vec3(2, -20, 1.4), "cutaway"), far = from(Vec3(0, -60, 60), "cutaway");
+  EXPECT_EQ(near.width, far.width);
+  EXPECT_NE(near.pixel, far.pixel);
+  EXPECT_NO_THROW(from(Vec3(2, -20, 1.4), "interior-1"));
+  EXPECT_THROW(from(Vec3(2, -20, 1.4), "plan"), Error);
+  EXPECT_THROW(from(Vec3(0, -20, 1), "cutaway"), Error);  // the eye where it looks at
+}
+
+TEST_F(Report, WhatTheFolderLacksIsSaidOnTheFirstScreen) {
+  ReportInput in = run().input();
+  in.missing = {"the <recording>: there is none"};
+  write_report(folder.name, in, small_settings());
+  const std::string html = read_text(folder.name + "/index.html");
+  EXPECT_LT(html.find("the &lt;recording&gt;: there is none"), html.find("<main"));
 }
 
 TEST_F(Report, ASignedErrorOfAKnownShiftIsThatShift) {
