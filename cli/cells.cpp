@@ -323,7 +323,7 @@ CellsRun run_cells(const std::vector<Scenario>& scenarios, const CellsSettings& 
   std::set<std::string> seen;
   for (const Scenario& s : scenarios) {
     Job job{bare(s), cell_name(s), world_key(s), drive_key(s), recording_key(s)};
-    job.scenario.name = job.name;
+    job.scenario.name = "cell";  // the same for all, since they share what bears it
     if (seen.insert(job.name).second) jobs.push_back(std::move(job));
   }
   const auto order = [](const Job& j) { return std::tie(j.world, j.drive, j.recording, j.name); };

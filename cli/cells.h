@@ -13,7 +13,7 @@ namespace adit {
 
 // A cell is one run among many: a resolved scenario, made as `adit run` makes it but without pictures and page, and kept
 // in a folder that bears the hash of its settings. What bears that name is whole: scenario.toml, timing.json, and
-// score.json (the same bytes as a run's) or failure.txt with the reason why there is none.
+// score.json (the same bytes as a run's of the name 'cell') or failure.txt with the reason why there is none.
 
 /// 16 hex digits of a text.
 std::string digest(const std::string& text);

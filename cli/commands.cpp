@@ -347,10 +347,8 @@ int help_command(const std::string& topic, Console& console) {
   MineSet set;
   Study study;
   Suite suite;
-  const std::map<std::string, Fields> topics = {{"scenario", fields(s)},
-                                                {"set", fields(set)},
-                                                {"study", study_fields(study)},
-                                                {"suite", suite_fields(suite)}};
+  const std::map<std::string, Fields> topics = {
+      {"scenario", fields(s)}, {"set", fields(set)}, {"study", study_fields(study)}, {"suite", suite_fields(suite)}};
   const auto of_topic = topics.find(topic);
   if (of_topic == topics.end()) throw Error("help " + topic + ": the topics are: scenario, set, study, suite");
   for (const Field& f : of_topic->second) {

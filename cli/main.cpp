@@ -168,6 +168,7 @@ void add_commands(CLI::App& app, Words& w) {
   add_common(list, w, false);
   CLI::App* help = app.add_subcommand("help", "this text, or a topic");
   help->add_option("topic", w.first, "scenario, set, study or suite");
+  add_common(help, w, false);
 }
 
 }  // namespace

@@ -77,14 +77,17 @@ std::vector<BeforeAfter> show_regressions(const std::string& out, const std::str
     progress("pictures", static_cast<double>(shown.size()), static_cast<double>(shown.size() + 1));
     BeforeAfter b{
         {m.scenario, m.method, m.metric.name, m.kind, m.words}, cell->run.seed, "view '" + view + "'", "", "", ""};
-    const Remade made = remade(cell->run);
-    b.after = name + ".after.png", b.report = "../reports/" + name + "/index.html";
-    show(out + "/trend/" + b.after, out + "/reports/" + name, view, made, now, cell->run);
-    // The map before was made of the recording before: only the truth is the same.
-    if (fs::exists(kept + "/scenario.toml")) {
-      const Scenario before = load_scenario(kept + "/scenario.toml");
-      b.before = name + ".before.png";
-      show(out + "/trend/" + b.before, "", view, remade(before), kept + "/map", before);
+    try {  // a picture that cannot be made must not cost the night
+      show(out + "/trend/" + name + ".after.png", out + "/reports/" + name, view, remade(cell->run), now, cell->run);
+      b.after = name + ".after.png", b.report = "../reports/" + name + "/index.html";
+      if (fs::exists(kept + "/scenario.toml")) {
+        // The map before was made of the recording before: only the truth is the same.
+        const Scenario before = load_scenario(kept + "/scenario.toml");
+        show(out + "/trend/" + name + ".before.png", "", view, remade(before), kept + "/map", before);
+        b.before = name + ".before.png";
+      }
+    } catch (const Error& e) {
+      b.title += std::string("; ") + e.what();
     }
     shown.push_back(std::move(b));
   }
@@ -101,13 +104,16 @@ void keep_maps(const std::string& out, const std::string& cells, const Night& ni
     const std::string cell = cells + "/" + cell_name(c.run), to = fresh + "/" + kept_name(c);
     if (!fs::exists(cell + "/map")) continue;
     write_text(to + "/scenario.toml", resolved_toml(c.run));
-    fs::copy(cell + "/map", to + "/map", fs::copy_options::recursive, failed);
+    fs::copy(cell + "/map", to + "/map", fs::copy_options::recursive | fs::copy_options::create_hard_links, failed);
     if (failed) throw Error(to + ": cannot keep the map: " + failed.message(), Fault::file);
   }
   if (!fs::exists(fresh)) return;
   fs::remove_all(dir, failed);
   fs::rename(fresh, dir, failed);
   if (failed) throw Error(dir + ": cannot be put in place: " + failed.message(), Fault::file);
+  for (const fs::directory_entry& build : fs::directory_iterator(fs::path(cells).parent_path()))
+    if (build.is_directory() && build.path().filename() != fs::path(cells).filename())
+      for (const fs::directory_entry& old : fs::directory_iterator(build)) fs::remove_all(old.path() / "map", failed);
 }
 
 }  // namespace adit

@@ -18,7 +18,8 @@ namespace adit {
 std::vector<BeforeAfter> show_regressions(const std::string& out, const std::string& cells, const Verdict& verdict,
                                           const std::vector<SuiteCell>& suite, const Progress& progress);
 
-/// Keeps the maps of a night that was well, for the pictures of one that is not: OUT/baseline/SCENARIO.METHOD.SEED.
+/// Keeps the maps of a night that was well, for the pictures of one that is not: OUT/baseline/SCENARIO.METHOD.SEED, and
+/// lets the maps of other builds go.
 void keep_maps(const std::string& out, const std::string& cells, const Night& night,
                const std::vector<SuiteCell>& suite);
 

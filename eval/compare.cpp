@@ -47,7 +47,9 @@ std::string truth_of(const Score& score) {
   return "";
 }
 
-double badness(const Metric& m) { return badness(m.name, m.better, m.value); }
+double badness(const Metric& m) {
+  return badness(m.name, m.better, m.value);
+}
 
 using Runs = std::map<int, const ScoredRun*>;  // by seed
 

@@ -124,7 +124,7 @@ Drawing dot_plot(const SideBySide& all, const ComparedMetric& metric, double wid
   drawing.width_px = width_px;
   drawing.height_px = 2 * std::ceil((70.0 + 34.0 * static_cast<double>(groups)) / 2);
   const double left = 46, right = width_px - 30, top = 26, bottom = drawing.height_px - 48;
-  const double margin = high > low ? 0.06 * (high - low) : std::max(1e-6, 0.1 * std::abs(high));
+  const double margin = high > low ? 0.06 * (high - low) : high == 0 ? 1 : 0.1 * std::abs(high);
   low -= margin, high += margin;
   const auto x = [&](double v) { return left + (v - low) / (high - low) * (right - left); };
   const auto y = [&](size_t g) { return top + 34.0 * (static_cast<double>(g) + 0.5); };
@@ -202,6 +202,8 @@ double common_range_m(const std::vector<ScoredRun>& runs) {
 Plate plan_plate(const ReportInput& input, const ReportSettings& settings) {
   const Exhibit x = make_exhibit(input, settings);
   Plate plate{error_plan(x), {}, {}};
+  for (auto& item : plate.figure.drawing.items)
+    if (auto* mark = std::get_if<Disc>(&item)) mark->link.clear();  // the close-ups are not on this page
   if (plate.figure.missing.empty()) plate.svg = to_svg(plate.figure.drawing, plate.figure.alt);
   return plate;
 }

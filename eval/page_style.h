@@ -37,6 +37,7 @@ figure svg { display: block; width: 100%; height: auto; border-radius: 8px; font
 figure svg a:focus-visible circle { stroke: #0b57a4; stroke-width: 5; }
 figcaption { font-size: .9rem; color: var(--faint); margin-top: .5em; max-width: 95ch; }
 .narrow { display: none; }
+.scroll + .trio { margin-top: 1.4em; }
 .trio { display: grid; grid-template-columns: repeat(3, 1fr); gap: 16px; }
 header figure svg { max-height: calc(100vh - 130px); min-height: 300px; }
 .pair { display: grid; grid-template-columns: repeat(2, 1fr); gap: 16px 20px; }
@@ -96,7 +97,7 @@ figure.view { max-width: none !important; }
 .ramp { display: flex; align-items: center; gap: 8px; font-size: .85rem; color: var(--faint); margin-top: 8px; }
 .ramp i { width: 220px; height: 12px; border-radius: 3px; }
 .player { display: grid; grid-template-columns: minmax(0, 1fr); gap: 6px; }
-.player img { width: 100%; max-width: 900px; border-radius: 8px; display: block; }
+.player img { width: 100%; height: auto; max-width: 900px; border-radius: 8px; display: block; }
 .buttons { display: flex; flex-wrap: wrap; gap: 8px; margin-top: 10px; }
 .buttons button { font: inherit; font-size: .9rem; color: var(--ink); background: var(--panel); border: 1px solid var(--rule); border-radius: 6px; padding: .3em .8em; cursor: pointer; }
 footer { margin: 3em auto 2em; color: var(--faint); font-size: .85rem; }
@@ -111,7 +112,7 @@ footer { margin: 3em auto 2em; color: var(--faint); font-size: .85rem; }
   .plate { overflow-x: auto; }
   .plate.big svg { min-width: 680px; }
 }
-@media print { nav, .skip, .slider, .toggles, .buttons { display: none; } .tall { max-height: none; } figure, tr, .numbers div { break-inside: avoid; } body { font-size: 11pt; } details > * { display: block; } }
+@media print { h2, h3 { break-after: avoid; } nav, .skip, .slider, .toggles, .buttons { display: none; } .tall { max-height: none; } figure, tr, .numbers div { break-inside: avoid; } body { font-size: 11pt; } details > * { display: block; } }
 )css";
 
 }  // namespace adit

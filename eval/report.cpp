@@ -8,50 +8,59 @@
 #include "eval/page_data.h"
 
 #include <algorithm>
+#include <functional>
+#include <mutex>
+#include <utility>
 
 namespace adit {
 
 namespace {
 
-std::vector<Chapter> make_chapters(const Exhibit& x, const Progress& progress) {
+// A page's pictures before they are made: chapters with empty plates, and what makes each of them.
+struct Plan {
   std::vector<Chapter> chapters;
-  const int total = 11 + x.settings.interiors + static_cast<int>(x.spots.size());
-  int done = 0;
-  const auto add = [&](Figure figure) {
-    chapters.back().plates.push_back({std::move(figure), {}, {}});
-    progress("report: pictures", ++done, total);
-  };
-  chapters.push_back({"worst", "Worst places", {}, Chapter::Columns::two});
-  for (int k = 0; k < static_cast<int>(x.spots.size()); ++k) add(spot_view(x, k));
-  if (x.spots.empty()) add(spot_view(x, 0));
-  chapters.push_back({"space", "The map in space", {}, Chapter::Columns::one});
-  add(cutaway_view(x));
-  add(chamber_view(x));
-  for (int k = 0; k < x.settings.interiors; ++k) add(interior_view(x, k));
-  add(tilt_section(x));
-  add(coverage_view(x));
-  chapters.push_back({"plans", "Path and plan", {}, Chapter::Columns::first_three});
-  add(truth_plan(x));
-  add(raw_plan(x));
-  add(aligned_plan(x));
-  add(error_chart(x));
-  add(rounds_plan(x));
-  add(closures_plan(x));
-  add(grid_plan(x));
-  return chapters;
+  std::vector<std::function<Figure()>> make;  // (plates of all chapters, in their order)
+
+  void chapter(Chapter begun) { chapters.push_back(std::move(begun)); }
+  void add(std::function<Figure()> figure) {
+    chapters.back().plates.emplace_back();
+    make.push_back(std::move(figure));
+  }
+};
+
+Plan plan_of(const Exhibit& x) {
+  Plan plan;
+  const auto add = [&](Figure (*view)(const Exhibit&)) { plan.add([&x, view] { return view(x); }); };
+  plan.chapter({"worst", "Worst places", {}, Chapter::Columns::two});
+  const int spots = std::max<int>(1, static_cast<int>(x.spots.size()));  // the first tells where there is none
+  for (int k = 0; k < spots; ++k) plan.add([&x, k] { return spot_view(x, k); });
+  plan.chapter({"space", "The map in space", {}, Chapter::Columns::one});
+  add(cutaway_view);
+  add(chamber_view);
+  for (int k = 0; k < x.settings.interiors; ++k) plan.add([&x, k] { return interior_view(x, k); });
+  add(tilt_section);
+  add(coverage_view);
+  plan.chapter({"plans", "Path and plan", {}, Chapter::Columns::first_three});
+  for (const auto view : {truth_plan, raw_plan, aligned_plan, error_chart, rounds_plan, closures_plan, grid_plan})
+    add(view);
+  return plan;
 }
 
-// Sets every drawing and writes its picture; each on its own, so on all threads.
-void set_plates(const std::string& dir, const std::vector<Plate*>& plates, const Progress& progress) {
-  progress("report: files", 0, 1);
+// Makes every picture, sets it and writes its file: each on its own, so on all threads.
+void set_plates(const std::string& dir, const std::vector<Plate*>& plates,
+                const std::vector<std::function<Figure()>>& make, const Progress& progress) {
+  std::mutex mutex;
+  size_t done = 0;
   parallel_for(plates.size(), [&](size_t k) {
     Plate& plate = *plates[k];
-    const Figure& figure = plate.figure;
-    if (!figure.missing.empty()) return;
-    plate.svg = to_svg(figure.drawing, figure.alt);
-    write_png(dir + "/" + figure.name + ".png", to_picture(figure.drawing));
+    plate.figure = make[k]();
+    if (plate.figure.missing.empty()) {
+      plate.svg = to_svg(plate.figure.drawing, plate.figure.alt);
+      write_png(dir + "/" + plate.figure.name + ".png", to_picture(plate.figure.drawing));
+    }
+    const std::lock_guard lock(mutex);
+    progress("report: pictures", static_cast<double>(++done), static_cast<double>(plates.size()));
   });
-  progress("report: files", 1, 1);
 }
 
 }  // namespace
@@ -68,12 +77,14 @@ Fields fields(ReportSettings& s) {
 void write_report(const std::string& dir, const ReportInput& input, const ReportSettings& settings,
                   const Progress& progress) {
   const Exhibit x = make_exhibit(input, settings, progress);
-  Plate hero{error_plan(x), {}, {}};
-  std::vector<Chapter> chapters = make_chapters(x, progress);
+  Plan plan = plan_of(x);
+  std::vector<Chapter>& chapters = plan.chapters;
+  Plate hero;
+  plan.make.insert(plan.make.begin(), [&x] { return error_plan(x); });
   std::vector<Plate*> plates = {&hero};
   for (Chapter& c : chapters)
     for (Plate& p : c.plates) plates.push_back(&p);
-  set_plates(dir, plates, progress);
+  set_plates(dir, plates, plan.make, progress);
   const std::vector<AlongFrame> frames = along_frames(x, progress);
   if (!frames.empty()) write_text(dir + "/along.png", animation_of(frames));
   const Figure narrow = narrow_error_plan(x);

@@ -36,7 +36,7 @@ struct ReportSettings {
   double range_m = 0;       // end of the colour range of signed errors; 0 = chosen by the errors
   int interiors = 3;        // views from the path
   int places = 10;          // worst places with a close-up
-  int frames = 24;          // of the animated sequence along the path
+  int frames = 12;          // of the animated sequence along the path
   double exaggeration = 2;  // of heights, in the view of the whole mine
 };
 Fields fields(ReportSettings& settings);

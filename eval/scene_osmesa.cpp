@@ -323,24 +323,36 @@ void darken_crevices(std::vector<Colour>& pixel, const std::vector<float>& depth
         flat[k] = perspective ? 1 / d : -std::min(d, camera.far_m);
       },
       1 << 16);
-  const auto measure = [&](int x, int y) {
-    return flat[static_cast<size_t>(std::clamp(y, 0, height - 1)) * width + std::clamp(x, 0, width - 1)];
-  };
   parallel_for(
       static_cast<size_t>(height),
       [&](size_t row) {
         const int y = static_cast<int>(row);
+        const float* deep = depth.data() + row * width;
+        const double* here = flat.data() + row * width;
+        std::vector<double> shade(width, 0.0), per_m(width), scale(width);
         for (int x = 0; x < width; ++x) {
-          const double d = depth[row * width + x];
-          if (!std::isfinite(d)) continue;
-          const double here = flat[row * width + x], scale = perspective ? d * d : 1;
-          const double px_m = perspective ? d * px : px;
-          double shade = 0;
-          for (const Probe& p : probes) {
-            const double deeper_m = ((measure(x + p.i, y + p.j) + measure(x - p.i, y - p.j)) / 2 - here) * scale;
-            shade += std::clamp(deeper_m / (p.radius_px * px_m) - 0.05, 0.0, 1.5) / 12;
-          }
-          const double keep = 0.40 + 0.60 * std::exp(-1.6 * shade);
+          const double d = deep[x];
+          scale[x] = perspective ? d * d : 1;
+          per_m[x] = perspective ? d * px : px;
+        }
+        for (const Probe& p : probes) {
+          const double* one = flat.data() + static_cast<size_t>(std::clamp(y + p.j, 0, height - 1)) * width;
+          const double* other = flat.data() + static_cast<size_t>(std::clamp(y - p.j, 0, height - 1)) * width;
+          const auto probe = [&](int x, int right, int left) {
+            const double deeper_m = ((one[right] + other[left]) / 2 - here[x]) * scale[x];
+            shade[x] += std::min(std::max(deeper_m / (p.radius_px * per_m[x]) - 0.05, 0.0), 1.5) / 12;
+          };
+          const auto near_edge = [&](int x) {
+            probe(x, std::clamp(x + p.i, 0, width - 1), std::clamp(x - p.i, 0, width - 1));
+          };
+          const int reach = std::abs(p.i), from = std::min(reach, width), to = std::max(from, width - reach);
+          for (int x = 0; x < from; ++x) near_edge(x);
+          for (int x = from; x < to; ++x) probe(x, x + p.i, x - p.i);  // without a branch: in vectors
+          for (int x = to; x < width; ++x) near_edge(x);
+        }
+        for (int x = 0; x < width; ++x) {
+          if (!std::isfinite(deep[x])) continue;
+          const double keep = 0.40 + 0.60 * std::exp(-1.6 * shade[x]);
           Colour& c = pixel[row * width + x];
           c = {static_cast<std::uint8_t>(c.r * keep), static_cast<std::uint8_t>(c.g * keep),
                static_cast<std::uint8_t>(c.b * keep), 255};

@@ -90,6 +90,7 @@ Fields fields(FastSettings& s) {
           {"beam_step_deg", &s.beam_step_deg, "of the beams that are cast", 0.1, 30},
           {"sector_deg", &s.sector_deg, "of the section about the path: the patches of rock that are counted", 1, 90},
           {"section_max_m", &s.section_max_m, "rock farther from the path does not count", 1, 100},
+          {"slope", &s.slope, "of rock against the body's axes, below which it is roughness", 0, 0.7},
           {"prior_m", &s.prior_m, "deviation of a pose before a scan", 1e-3, 1e3},
           {"prior_deg", &s.prior_deg, "and of its angles", 1e-3, 90},
           {"information", &s.information, "weight of what scans tell of the pose", 0, 1e6},
@@ -128,6 +129,7 @@ Course::Course(const Caster& caster, const Trajectory& path, const FastSettings&
   sectors_ = static_cast<size_t>(std::max(1L, std::lround(360 / settings.sector_deg)));
   lay_cells();
   weigh();
+  level_roughness();
 }
 
 void Course::lay_cells() {
@@ -200,6 +202,43 @@ void Course::weigh() {
   for (const double v : volume_m3_) volume_all_ += v;
 }
 
+namespace {
+
+size_t side_of(const Mesh& mesh, size_t face) {
+  if (mesh.label.empty()) return 2;
+  return mesh.label[face] == Label::floor ? 0 : mesh.label[face] == Label::roof ? 1 : 2;
+}
+
+// A direction without its components below `slope`.
+Vec3 main_directions(Vec3 n, double slope) {
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(n[k]) < slope) n[k] = 0;
+  return n.normalized();
+}
+
+}  // namespace
+
+void Course::level_roughness() {
+  const Mesh& mesh = caster_.mesh();
+  patch_normal_W_.assign(stations() * sectors_ * 3, Vec3::Zero());
+  for (size_t f = 0; f < mesh.face.size(); ++f) {
+    const Vec3 a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
+    const std::int64_t patch = patch_of((a + b + c) / 3);
+    if (patch >= 0) patch_normal_W_[static_cast<size_t>(patch) * 3 + side_of(mesh, f)] += (b - a).cross(c - a);
+  }
+  for (Vec3& n : patch_normal_W_)
+    if (n.squaredNorm() > 0) n.normalize();
+}
+
+Vec3 Course::normal_W(std::int32_t face, std::int64_t patch) const {
+  const auto f = static_cast<size_t>(face);
+  if (patch >= 0) {
+    const Vec3& mean = patch_normal_W_[static_cast<size_t>(patch) * 3 + side_of(caster_.mesh(), f)];
+    if (mean.squaredNorm() > 0) return mean;
+  }
+  return caster_.mesh().normal(f);
+}
+
 Sight Course::sight(const Mount& mount, const Hull& hull) const {
   double each_counts = 1;
   const std::vector<FixedBeam> beams = beams_of(mount, hull, settings_.beam_step_deg, each_counts);
@@ -225,15 +264,18 @@ Sight Course::sight(const Mount& mount, const Hull& hull) const {
     for (size_t k = 0; k < beams.size(); ++k) {
       const double range = static_cast<double>(hits.range_m[k]);
       if (hits.face[k] < 0 || range > beams[k].free_m) continue;
-      const Vec3 n = R_BW * mesh.normal(static_cast<size_t>(hits.face[k])), d = beams[k].along;
+      const Vec3& d = beams[k].along;
+      if (!echoes(mount.laser, mesh, hits.face[k], range, static_cast<double>(hits.cosine[k]))) continue;
+      const std::int64_t patch = patch_of(from_W + range * (R_WB * d));
+      if (patch >= 0) mark(sight.seen, patch);
+      const Vec3 n = main_directions(R_BW * normal_W(hits.face[k], patch), settings_.slope);
       const double cosine = n.dot(d);
-      if (cosine < met_edge_on || !echoes(mount.laser, mesh, hits.face[k], range, cosine)) continue;
+      if (cosine < met_edge_on) continue;
       const Vec3 p = mount.X_BS.translation() + range * d;
       Vec6 g;
       g << n, p.cross(n);
       g /= cosine;
       I.selfadjointView<Eigen::Lower>().rankUpdate(g, weight);
-      if (const std::int64_t patch = patch_of(from_W + range * (R_WB * d)); patch >= 0) mark(sight.seen, patch);
     }
     I = Mat6(I.selfadjointView<Eigen::Lower>());
   }

@@ -21,11 +21,12 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 /// How lasers are judged without a mapper. Keys below [fast].
 struct FastSettings {
-  double step_m = 2;                  // between two stations of the path
-  double beam_step_deg = 2;           // of the beams that are cast; the others count as they do
-  double sector_deg = 10;             // of the section about the path: the patches of rock that are counted
-  double section_max_m = 5;           // rock farther from the path does not count
-  double prior_m = 1, prior_deg = 5;  // of a pose before a scan: what stays at it is not seen at all
+  double step_m = 2;         // between two stations of the path
+  double beam_step_deg = 2;  // of the beams that are cast; the others count as they do
+  double sector_deg = 10;    // of the section about the path: the patches of rock that are counted
+  double section_max_m = 5;  // rock farther from the path does not count
+  double slope = 0.25;       // of rock against the body's axes: less of it is roughness, which tells a mapper nothing
+  double prior_m = 1, prior_deg = 5;                // of a pose before a scan: what stays at it is not seen at all
   double information = 1, surface = 1, volume = 1;  // weights of the value
 };
 Fields fields(FastSettings& settings);
@@ -53,7 +54,8 @@ std::string blind_words(const FastScore& score);
 /// A path through a mine on which lasers are judged: stations, the rock about them, rays. Safe to ask from many threads.
 ///   I = sum over the beams of g g^T / sigma^2,   g = -(n, (p - o) x n) / (n . d)
 /// with p where the beam d ends, n the normal there, o the body's origin, in B; sigma as in eval/bound.h. In the plane it
-/// is that bound's. Source: Censi, On achievable accuracy for range-finder localization, ICRA 2007, Eq. (6).
+/// is that bound's. A mapper does not know the rock beforehand: n is the mean over the patch of rock, and components of
+/// it below `slope` count as none. Source: Censi, On achievable accuracy for range-finder localization, ICRA 2007, Eq. (6).
 class Course {
  public:
   /// Mesh and caster must outlive it. Error for a path shorter than two steps.
@@ -75,12 +77,15 @@ class Course {
   double surface_all_ = 0, volume_all_ = 0;
   Vec2 low_W_ = Vec2::Zero();
   int columns_ = 0, rows_ = 0;
+  std::vector<Vec3> patch_normal_W_;   // (patches x 3: floor, roof, ribs) zero where no face has its middle there
   std::vector<std::int32_t> nearest_;  // station of each cell in plan, -1: far from the path
 
   std::int32_t station_at(const Vec3& p_W) const;
   std::int64_t patch_of(const Vec3& p_W) const;
   void lay_cells();
   void weigh();
+  void level_roughness();
+  Vec3 normal_W(std::int32_t face, std::int64_t patch) const;
 };
 
 }  // namespace adit

@@ -175,20 +175,24 @@ Figure interior_view(const Exhibit& x, int k) {
 std::vector<AlongFrame> along_frames(const Exhibit& x, const Progress& progress) {
   constexpr int width = 336, height = 210;
   std::vector<AlongFrame> frames;
-  std::vector<Drawing> drawings;
   if (!x.has_surface() && !x.has_points()) return frames;
+  std::vector<Lookout> lookouts;
   for (int k = 0; k < x.settings.frames; ++k) {
     const auto from = lookout(x, (k + 0.5) / x.settings.frames, 0);
     if (!from) break;
-    Drawing drawing = beside(look(x, *from, camera_of(*from), width, height), "the map", 12);
-    drawing.add(Words{{drawing.width_px - 10, height - 10.0},
-                      plain_number(from->along_m, 4) + " m",
-                      {.size_px = 13, .colour = ink::white, .anchor = Anchor::end, .bold = true}});
-    frames.push_back({from->along_m, {}});
-    drawings.push_back(std::move(drawing));
-    progress("report: along the path", k + 1, x.settings.frames);
+    lookouts.push_back(*from);
   }
-  parallel_for(frames.size(), [&](size_t k) { frames[k].png = encode_png(to_picture(drawings[k])); });
+  frames.resize(lookouts.size());
+  progress("report: along the path", 0, x.settings.frames);
+  parallel_for(frames.size(), [&](size_t k) {
+    const Lookout& from = lookouts[k];
+    Drawing drawing = beside(look(x, from, camera_of(from), width, height), "the map", 12);
+    drawing.add(Words{{drawing.width_px - 10, height - 10.0},
+                      plain_number(from.along_m, 4) + " m",
+                      {.size_px = 13, .colour = ink::white, .anchor = Anchor::end, .bold = true}});
+    frames[k] = {from.along_m, encode_png(to_picture(drawing))};
+  });
+  progress("report: along the path", x.settings.frames, x.settings.frames);
   return frames;
 }
 

@@ -65,7 +65,6 @@ class Drawer {
  public:
   Drawer(const WorldSettings& s, const MinePlan& plan, const Workings& workings, std::uint64_t seed)
       : s_(s), plan_(plan), workings_(workings), seed_(seed), graph_{plan, std::vector<char>(plan.passages.size(), 0)} {
-    had_loops_ = graph_.loops() > 0;
     degree_.assign(plan.nodes.size(), 0);
     for (size_t p = 0; p < plan.passages.size(); ++p) {
       ++degree_[plan.passages[p].a];
@@ -91,7 +90,7 @@ class Drawer {
   bool block(const std::vector<size_t>& passages) {
     std::vector<char> before = graph_.gone;
     for (size_t p : passages) graph_.gone[p] = 1;
-    if (s_.decay.may_cut || !had_loops_ || graph_.loops() > 0) return true;
+    if (s_.decay.may_cut || graph_.loops() > 0) return true;
     graph_.gone = std::move(before);
     return false;
   }
@@ -232,7 +231,6 @@ class Drawer {
   const Workings& workings_;
   std::uint64_t seed_;
   Graph graph_;
-  bool had_loops_;
   std::vector<int> degree_;
   std::vector<double> length_;
   double total_m_ = 0;

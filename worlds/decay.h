@@ -43,7 +43,7 @@ struct Decay {
 WorldSettings in_condition(const WorldSettings& settings);
 
 /// What has come down and what stands across. Unless world.decay.may_cut, nothing blocks a passage whose loss would leave
-/// a mine that has loops without any.
+/// a mine without a loop.
 Decay draw_decay(const WorldSettings& settings, const MinePlan& plan, const Workings& workings, std::uint64_t seed);
 
 /// Height of the stones on a heap: steps between blocks of some decimetres.

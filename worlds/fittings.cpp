@@ -141,8 +141,12 @@ Bodies tie(const Space& space, const Spot& spot, double half_length_m, double* t
   Bodies bodies;
   const auto patch = space.patch(rectangle(spot.p, spot.left(), half_length_m, 0.09));
   if (!patch) return {};
-  *top_z = patch->floor_high() + 0.02;
-  if (!add(bodies, patch, on_floor(), at(*top_z), Material::timber)) return {};
+  // Bedded: it follows the floor, so that small wheels get over it.
+  constexpr double proud_m = 0.013;
+  *top_z = patch->floor_high() + proud_m;
+  if (!add(
+          bodies, patch, on_floor(), [](const LevelPoint& v) { return v.floor_z + proud_m; }, Material::timber))
+    return {};
   return bodies;
 }
 

@@ -142,8 +142,8 @@ class Furnisher {
       const std::uint64_t k = 1 + 8 * static_cast<std::uint64_t>(i);
       const Spot spot = way.at(lot(cribs, k, way.from_m + 0.5, way.to_m - 0.5));
       const double side = lot(cribs, k + 1, 0.75, 0.9), sign = lot(cribs, k + 2) < 0.5 ? -1 : 1;
-      const double off = free_m(space_, spot, sign, {0.05, 0.2, 0.4, 0.6, 0.8, 0.95}) - 0.12 - 0.55 * side;
-      if (off - 0.55 * side < lane() || !std::isfinite(off)) continue;
+      const double off = free_m(space_, spot, sign, {0.3, 0.5, 0.7, 0.9}) - 0.06 - 0.5 * side;
+      if (off - 0.5 * side < lane() || !std::isfinite(off)) continue;
       const double turn = lot(cribs, k + 3, -0.12, 0.12);
       const Vec2 along = Eigen::Rotation2Dd(turn) * spot.along;
       put(Label::crib, crib(space_, spot.beside(sign * off), along, side), yaw_of(along));
@@ -204,9 +204,9 @@ class Furnisher {
       Spot spot = way.at(s);
       double off = 1e9;
       for (double ds : {-1.4, -0.7, 0.0, 0.7, 1.4})
-        off = std::min(off, free_m(space_, way.at(s + ds), sign, {0.05, 0.2, 0.5}) - 0.85);
+        off = std::min(off, free_m(space_, way.at(s + ds), sign, {0.35, 0.45}) - 0.72);
       if (off - 0.66 < lane() || !std::isfinite(off)) continue;
-      spot.p = spot.beside(sign * std::min(off, lane() + 1.2));
+      spot.p = spot.beside(sign * std::min(off, lane() + 0.75));
       put(Label::belt, belt(space_, spot, length), yaw_of(spot.along));
     }
   }

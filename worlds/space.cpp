@@ -78,13 +78,23 @@ Box3 box_of(const Solid& s) {
   return b;
 }
 
+std::pair<long, long> cell_of(const Vec2& p) {
+  return {std::lround(std::floor(p.x() / placed_cell_m)), std::lround(std::floor(p.y() / placed_cell_m))};
+}
+
 // Faces of two bodies in one mesh that shares nothing between them, and the pairs that may meet.
 class Pairs {
  public:
   explicit Pairs(const Solid& body) : body_(body) {
     both_.vertex = body.vertex;
     both_.face = body.face;
-    for (const auto& f : body.face) own_.push_back(box_of(body.vertex, f));
+    for (const auto& f : body.face) {
+      const Box3 b = own_.emplace_back(box_of(body.vertex, f));
+      const auto from = cell_of(b.low.head<2>()), to = cell_of(b.high.head<2>());
+      for (long y = from.second; y <= to.second; ++y)
+        for (long x = from.first; x <= to.first; ++x)
+          near_[{x, y}].push_back(static_cast<std::uint32_t>(own_.size() - 1));
+    }
   }
   /// Whether a face of something else crosses one of the body's.
   bool crosses(const std::array<Vec3, 3>& corner) {
@@ -95,8 +105,12 @@ class Pairs {
     both_.face.resize(body_.face.size());
     const auto n = static_cast<std::uint32_t>(body_.vertex.size());
     both_.face.push_back({n, n + 1, n + 2});
-    for (size_t f = 0; f < own_.size(); ++f)
-      if (own_[f].meets(other) && faces_cross(both_, f, own_.size())) return true;
+    const auto from = cell_of(other.low.head<2>()), to = cell_of(other.high.head<2>());
+    for (long y = from.second; y <= to.second; ++y)
+      for (long x = from.first; x <= to.first; ++x)
+        if (const auto found = near_.find({x, y}); found != near_.end())
+          for (std::uint32_t f : found->second)
+            if (own_[f].meets(other) && faces_cross(both_, f, own_.size())) return true;
     return false;
   }
 
@@ -104,6 +118,7 @@ class Pairs {
   const Solid& body_;
   Mesh both_;
   std::vector<Box3> own_;
+  std::map<std::pair<long, long>, std::vector<std::uint32_t>> near_;  // of own_, by squares of the plan
 };
 
 // Whether two triangles of the plan come within some millimetres of one another: no side of either parts them.
@@ -123,10 +138,6 @@ bool near_in_plan(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b) {
     }
   }
   return true;
-}
-
-std::pair<long, long> cell_of(const Vec2& p) {
-  return {std::lround(std::floor(p.x() / placed_cell_m)), std::lround(std::floor(p.y() / placed_cell_m))};
 }
 
 }  // namespace

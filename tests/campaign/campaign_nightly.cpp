@@ -3,7 +3,7 @@
 //   campaign_nightly FILE [SEEDS [MORE]]   every variant of SEEDS seeds (16), the sound one of MORE besides (24); rows are
 //                                          appended to FILE, one a score; what stands there is not made again
 // Then the bundled suite `nightly` judges: 200 times two halves of the sound runs against each other, where every alarm is
-// false; and 200 times each fault with seeds drawn with replacement, for several numbers of seeds.
+// false; and 100 times each fault with seeds drawn with replacement, for several numbers of seeds.
 // Exit code 1: more than 5 % false alarms.
 #include "base/error.h"
 #include "base/rng.h"
@@ -149,12 +149,12 @@ double false_alarms(const std::vector<Values>& sound, size_t seeds) {
   return alarms / 200.0;
 }
 
-// Share of 200 draws of so many seeds that raise an alarm, and the metric that does so most often.
+// Share of 100 draws of so many seeds that raise an alarm, and the metric that does so most often.
 std::pair<double, std::string> power(const std::vector<Values>& sound, const std::vector<Values>& faulty,
                                      size_t seeds) {
   int caught = 0;
   std::map<std::string, int> by;
-  for (std::uint64_t t = 0; t < 200; ++t) {
+  for (std::uint64_t t = 0; t < 100; ++t) {
     std::vector<size_t> drawn;
     for (size_t k = 0; k < seeds; ++k)
       drawn.push_back(static_cast<size_t>(uniform(t, Draw::bootstrap, k) * static_cast<double>(faulty.size())));
@@ -166,7 +166,7 @@ std::pair<double, std::string> power(const std::vector<Values>& sound, const std
   std::string best = "-";
   for (const auto& [metric, count] : by)
     if (best == "-" || count > by[best]) best = metric;
-  return {caught / 200.0, best};
+  return {caught / 100.0, best};
 }
 
 int tell(const std::string& file, int seeds, int more) {
@@ -181,7 +181,7 @@ int tell(const std::string& file, int seeds, int more) {
     if (v.name == "sound" || !table.contains(v.name)) continue;
     std::printf("%-30s %2zu seeds made; power", v.name.c_str(), table.at(v.name).size());
     std::string best;
-    for (const size_t n : {11, 12, 16, 24}) {
+    for (const size_t n : {11, 12, 16}) {
       const auto [share, metric] = power(sound, table.at(v.name), n);
       std::printf("  %.2f at %zu", share, n);
       best = metric;

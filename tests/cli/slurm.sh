@@ -59,6 +59,9 @@ for _ in $(seq 240); do  # requeued after its first cell, before its last
   sleep 0.1
 done
 scontrol requeue "${job}_1" && echo "requeued"
-for _ in $(seq 1200); do [ -z "$(squeue -h -j "$job" 2>/dev/null)" ] && break; sleep 0.5; done
+for _ in $(seq 1200); do  # Slurm lets a requeued task wait two minutes
+  left=$(squeue -h -j "$job" 2>/dev/null) && [ -z "$left" ] && break
+  sleep 0.5
+done
 cat "$S"/log/task-*.txt
 "$adit" study merge "$out" --quiet

@@ -43,7 +43,7 @@ TEST(Cells, TheNameDependsOnWhatTheScoreDependsOnAndOnNothingElse) {
   EXPECT_EQ(cell_name(s).size(), 16u);
   EXPECT_EQ(cell_name(s), cell_name(tiny({"name=other", "about=words", "report.width_px=600"})));
   for (const char* change : {"seed=8", "world.height_m=1.5", "drive.speed_mps=0.6", "sensors.noise=false",
-                             "map.method=none", "score.patch_m=0.3", "sensors.mounts=[\"up off\"]"})
+                             "map.method=icra2003", "score.patch_m=0.3", "sensors.mounts=[\"up off\"]"})
     EXPECT_NE(cell_name(s), cell_name(tiny({change}))) << change;
 }
 
@@ -93,10 +93,11 @@ TEST(Cells, AreScoredToTheByteAsARunIsAndAFolderLeftByAKilledProcessIsSweptAway)
   write_text(left + "/scenario.toml", "half");
   run_cells({s}, {.dir = dir, .keep_map = true});
   EXPECT_FALSE(fs::exists(left));
-  ASSERT_EQ(std::system((std::string(ADIT_BINARY) + " run " + ADIT_SOURCE_DIR +
-                         "/tests/cli/tiny.toml --set sensors.baud=9600 --quiet -o " + out + " >/dev/null")
-                            .c_str()),
-            0);
+  ASSERT_EQ(
+      std::system((std::string(ADIT_BINARY) + " run " + ADIT_SOURCE_DIR +
+                   "/tests/cli/tiny.toml --set sensors.baud=9600 --set name=cell --quiet -o " + out + " >/dev/null")
+                      .c_str()),
+      0);
   EXPECT_EQ(read_text(dir + "/" + cell_name(s) + "/score.json"), read_text(out + "/score.json"));
   EXPECT_TRUE(fs::exists(dir + "/" + cell_name(s) + "/map/trajectory.tum"));
   fs::remove_all(dir), fs::remove_all(out);

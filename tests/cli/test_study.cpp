@@ -198,7 +198,7 @@ TEST(Study, ARigWithABlindDirectionLosesAndThePageSaysWhyAndShardsMergeToTheSame
   const nlohmann::json j = nlohmann::json::parse(one.out);
   EXPECT_EQ(j["best"], 0);
   EXPECT_EQ(j["worst"], 1);
-  EXPECT_NEAR(j["points"][1]["fast"]["fast.blind_left"], 1, 1e-3);
+  EXPECT_GT(j["points"][1]["fast"]["fast.blind_left"], 0.5);
   EXPECT_LT(j["points"][0]["fast"]["fast.blind_left"], 0.1);
   EXPECT_THAT(read_text(whole + "/index.html"), HasSubstr("it is blind there"));
   EXPECT_THAT(read_text(whole + "/recommended.toml"), HasSubstr("name = \"profile\""));

@@ -208,7 +208,8 @@ TEST(Decay, RubbleLiesLooserThanItWasAndNoSteeperThanItsRepose) {
   for (double x = -6; x < 6; x += 0.37)
     for (double y = -4; y < 4; y += 0.41) {
       const double h = f.rubble_m({x, y});
-      EXPECT_LE(std::hypot(f.rubble_m({x + 1e-4, y}) - h, f.rubble_m({x, y + 1e-4}) - h) / 1e-4, f.repose + 1e-6);
+      EXPECT_LE(std::hypot(f.rubble_m({x + 1e-4, y}) - h, f.rubble_m({x, y + 1e-4}) - h) / 1e-4,
+                f.repose + 1e-3);  // a difference over 0.1 mm of a cone
     }
   EXPECT_EQ(f.rubble_m({0, 0}), 1.5);
   EXPECT_EQ(f.rubble_m({0, 1.5 / f.repose + 0.01}), 0);
