@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command as its users call it: the built program, its files, its exit codes, its words.
 #include "base/files.h"
+#include "tests/support/folder.h"
 #include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
@@ -40,15 +41,6 @@ std::string fresh_folder(const std::string& name) {
   const std::string dir = scratch("cli_") + name;
   fs::remove_all(dir);
   return dir;
-}
-
-// Every file below a folder with its bytes, but for the one that may differ between equal runs.
-std::map<std::string, std::string> bytes_of(const std::string& dir) {
-  std::map<std::string, std::string> all;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dir))
-    if (entry.is_regular_file() && entry.path().filename() != "timing.json")
-      all[fs::relative(entry.path(), dir).string()] = read_text(entry.path().string());
-  return all;
 }
 
 // One run of the tiny mine serves all tests that only look at it.

@@ -3,6 +3,7 @@
 #include "base/files.h"
 #include "base/parallel.h"
 #include "cli/cells.h"
+#include "tests/support/folder.h"
 #include "tests/support/scratch.h"
 
 #include <gmock/gmock.h>
@@ -28,14 +29,6 @@ std::string fresh(const std::string& name) {
   const std::string dir = scratch("cells_") + name;
   fs::remove_all(dir);
   return dir;
-}
-
-std::map<std::string, std::string> bytes_of(const std::string& dir) {
-  std::map<std::string, std::string> all;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dir))
-    if (entry.is_regular_file() && entry.path().filename() != "timing.json")
-      all[fs::relative(entry.path(), dir).string()] = read_text(entry.path().string());
-  return all;
 }
 
 TEST(Cells, TheNameDependsOnWhatTheScoreDependsOnAndOnNothingElse) {
