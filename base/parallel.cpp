@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <memory>
+#include <mutex>
+#include <thread>
 #include <vector>
 
 namespace adit {
@@ -43,6 +46,55 @@ struct CountMe {
   }
 };
 
+#ifdef __SANITIZE_THREAD__
+
+// The thread sanitizer does not see how oneTBB orders its threads: for it alone, plain threads that take turn after turn.
+void spread(size_t turns, const std::function<void(size_t)>& f) {
+  std::atomic<size_t> next{0};
+  std::exception_ptr failure;
+  std::once_flag failed;
+  const auto work = [&] {
+    const CountMe count;
+    try {
+      for (size_t k; (k = next++) < turns;) f(k);
+    } catch (...) {
+      next = turns;
+      std::call_once(failed, [&] { failure = std::current_exception(); });
+    }
+  };
+  std::vector<std::thread> others;
+  if (depth == 0)
+    for (int t = 1; t < crew().size; ++t) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+#else
+
+// The turns on the threads of the crew.
+void spread(size_t turns, const std::function<void(size_t)>& f) {
+  const auto run = [&] {
+    tbb::parallel_for(
+        size_t{0}, turns,
+        [&](size_t k) {
+          const CountMe count;
+          f(k);
+        },
+        tbb::simple_partitioner());
+  };
+  // A thread that waits for a loop within a loop helps with that loop alone: else it might begin another turn of the outer
+  // one, and hold two at a time.
+  const auto apart = [&] { depth > 0 ? tbb::this_task_arena::isolate(run) : run(); };
+  if (crew().arena) {
+    crew().arena->execute(apart);
+  } else {
+    apart();
+  }
+}
+
+#endif
+
 }  // namespace
 
 void set_threads(int threads) {
@@ -65,23 +117,7 @@ void parallel_chunks(size_t n, size_t grain, const std::function<void(size_t, si
   if (n == 0) return;
   grain = std::max<size_t>(grain, 1);
   const size_t chunks = (n + grain - 1) / grain;
-  const auto run = [&] {
-    tbb::parallel_for(
-        size_t{0}, chunks,
-        [&](size_t k) {
-          const CountMe count;
-          f(k * grain, std::min(n, (k + 1) * grain));
-        },
-        tbb::simple_partitioner());
-  };
-  // A thread that waits for a loop within a loop helps with that loop alone: else it might begin another turn of the outer
-  // one, and hold two at a time.
-  const auto apart = [&] { depth > 0 ? tbb::this_task_arena::isolate(run) : run(); };
-  if (crew().arena) {
-    crew().arena->execute(apart);
-  } else {
-    apart();
-  }
+  spread(chunks, [&](size_t k) { f(k * grain, std::min(n, (k + 1) * grain)); });
 }
 
 void parallel_for(size_t n, const std::function<void(size_t)>& f, size_t grain) {
