@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/estimate.h"
 
+#include "base/damaged_estimate.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "base/path_file.h"
@@ -206,21 +207,52 @@ void save_estimate(const std::string& dir, const Estimate& e) {
   write_text(dir + "/map.json", map_text(e));
 }
 
-Estimate load_estimate(const std::string& dir) {
+namespace {
+
+// Reads each file of a map through `attempt(read)`, which may let a read fail: it leaves what it was to fill empty.
+template <class Attempt>
+Estimate read_parts(const std::string& dir, const Attempt& attempt) {
   Estimate e;
-  read_map_text(dir + "/map.json", e);
-  e.path = read_tum(dir + "/trajectory.tum");
-  e.open_loop = load_planar(dir + "/open_loop.tum", e.path.size());
-  e.planar = load_planar(dir + "/planar.tum", e.path.size());
-  if (fs::exists(dir + "/path_covariance.txt")) e.covariance = read_covariances(dir + "/path_covariance.txt", e.path);
-  if (fs::exists(dir + "/grid.yaml")) e.grid = read_grid(dir + "/grid.yaml");
-  if (fs::exists(dir + "/points.ply")) e.points = read_points(dir + "/points.ply");
-  if (fs::exists(dir + "/surface.ply")) e.surface = read_mesh(dir + "/surface.ply");
-  if (e.graph && fs::exists(dir + "/graph.g2o")) {
-    GraphFile file = read_g2o(dir + "/graph.g2o");
-    e.graph->graph = std::move(file.graph);
-    e.graph->id = std::move(file.id);
-  }
+  const auto read = [&](const std::string& name, const auto& how) { attempt([&] { how(dir + "/" + name); }); };
+  const auto read_if_there = [&](const std::string& name, const auto& how) {
+    if (fs::exists(dir + "/" + name)) read(name, how);
+  };
+  read("map.json", [&](const std::string& file) {
+    Estimate told;
+    read_map_text(file, told);
+    e = std::move(told);
+  });
+  read("trajectory.tum", [&](const std::string& file) { e.path = read_tum(file); });
+  read("open_loop.tum", [&](const std::string& file) { e.open_loop = load_planar(file, e.path.size()); });
+  read("planar.tum", [&](const std::string& file) { e.planar = load_planar(file, e.path.size()); });
+  read_if_there("path_covariance.txt", [&](const std::string& file) { e.covariance = read_covariances(file, e.path); });
+  read_if_there("grid.yaml", [&](const std::string& file) { e.grid = read_grid(file); });
+  read_if_there("points.ply", [&](const std::string& file) { e.points = read_points(file); });
+  read_if_there("surface.ply", [&](const std::string& file) { e.surface = read_mesh(file); });
+  if (e.graph)
+    read_if_there("graph.g2o", [&](const std::string& file) {
+      GraphFile given = read_g2o(file);
+      e.graph->graph = std::move(given.graph);
+      e.graph->id = std::move(given.id);
+    });
+  return e;
+}
+
+}  // namespace
+
+Estimate load_estimate(const std::string& dir) {
+  return read_parts(dir, [](const auto& read) { read(); });
+}
+
+Estimate load_what_is_whole(const std::string& dir, std::vector<std::string>& damaged) {
+  Estimate e = read_parts(dir, [&](const auto& read) {
+    try {
+      read();
+    } catch (const Error& error) {
+      damaged.push_back(error.what());
+    }
+  });
+  if (e.graph && e.graph->graph.node.empty()) e.graph.reset();
   return e;
 }
 

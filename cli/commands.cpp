@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 
 #include "base/bundled.h"
+#include "base/damaged_estimate.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "cli/convert.h"
@@ -89,6 +90,17 @@ struct RunFolder {
   }
 };
 
+// The score's pictures need more than score.json keeps: it is computed again. Of a map that has lost files the numbers
+// are still those of score.json, which was made of the whole.
+void score_again(RunFolder& run, const std::string& file, bool whole) {
+  run.score = score_map(run.world, run.recording.truth, run.recording.log.rig, run.estimate, run.scenario.score);
+  if (whole) return;
+  run.missing.push_back("the score of the whole map: pictures and worst places are of what is left of it");
+  if (!fs::exists(file)) return;
+  run.score.metrics = read_score(file).metrics;
+  run.missing.back() += "; the numbers are those of score.json";
+}
+
 // What of a run's folder is there and can be read; `missing` says what is not.
 RunFolder load_run(const std::string& out, const Common& common) {
   if (!fs::is_directory(out)) throw Error(out + ": no such folder; it must be the folder of a run");
@@ -110,12 +122,11 @@ RunFolder load_run(const std::string& out, const Common& common) {
   load("the mine", "world", [&](const std::string& dir) { run.world = load_world(dir); });
   load("the recording", "recording/log.h5", [&](const std::string& file) { run.recording.log = load_log(file); });
   load("the truth", "recording/truth.h5", [&](const std::string& file) { run.recording.truth = load_truth(file); });
-  load("the map", "map", [&](const std::string& dir) { run.estimate = load_estimate(dir); });
-  if (parts == 4) {
-    // The score's pictures need more than score.json keeps: it is computed again.
-    load("the score", "world", [&](const std::string&) {
-      run.score = score_map(run.world, run.recording.truth, run.recording.log.rig, run.estimate, run.scenario.score);
-    });
+  std::vector<std::string> damaged;
+  load("the map", "map", [&](const std::string& dir) { run.estimate = load_what_is_whole(dir, damaged); });
+  for (const std::string& file : damaged) run.missing.push_back("of the map: " + file);
+  if (parts == 4 && !run.estimate.path.empty()) {
+    load("the score", "world", [&](const std::string&) { score_again(run, out + "/score.json", damaged.empty()); });
     return run;
   }
   load("the score", "score.json", [&](const std::string& file) { run.score = read_score(file); });
@@ -266,15 +277,18 @@ int report_side_by_side(const std::vector<std::string>& outs, const Common& comm
   for (size_t g = 0; g < shown.size(); ++g) {
     console.progress()("report: plans", static_cast<double>(g), static_cast<double>(shown.size()));
     Plate plate;
+    PathErrors path;
     if (shown[g] < outs.size()) {
       const RunFolder run = load_run(outs[shown[g]], {"", -1, common.assignments});
       ReportSettings settings = run.scenario.report;
       settings.range_m = common_range_m(all.runs);
       plate = plan_plate(run.input(), settings);
+      path = path_errors(run.score, all.runs[shown[g]].seed);
     } else {
       plate.figure.missing = "none of its runs was scored";
     }
     all.plans.push_back(std::move(plate));
+    all.paths.push_back(std::move(path));
   }
   const std::string dir = common.out.empty() ? "comparison" : common.out, file = dir + "/index.html";
   std::vector<std::string> links;

@@ -46,7 +46,7 @@ int dispatch(CLI::App& app, const Words& w) {
   Console console(w.quiet, w.json);
   set_threads(w.threads);
   if (app.got_subcommand("run")) return run_command(w.first, w.common, console);
-  if (app.got_subcommand("world") && !w.stats.empty()) return stats_command(w.stats, console);
+  if (app.got_subcommand("world") && !w.stats.empty()) return stats_command(w.stats, w.common.out, console);
   if (app.got_subcommand("world") && is_set(w.first)) return set_command(w.first, w.common, console);
   if (app.got_subcommand("world"))
     return w.check.empty() ? world_command(w.first, w.common, console) : check_command(w.check, console);
@@ -110,7 +110,9 @@ void add_commands(CLI::App& app, Words& w) {
       "--check", w.check,
       "verify a mesh (PLY, OBJ): closed, oriented, labelled, not self-crossing; or a world's folder, its truth too");
   check->excludes(scenario);
-  world->add_option("--stats", w.stats, "what all mines under this folder measure: widths, heights, grades, junctions")
+  world
+      ->add_option("--stats", w.stats,
+                   "what all mines under this folder measure, as a table and as plots (-o, else in the folder)")
       ->excludes(scenario)
       ->excludes(check);
   add_common(world, w, true);

@@ -2,8 +2,10 @@
 #include "cli/stats_command.h"
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/world.h"
 #include "cli/scenario.h"
+#include "eval/histograms.h"
 #include "worlds/decay.h"
 #include "worlds/stats.h"
 
@@ -48,6 +50,9 @@ void compare(const std::string& mine, const MineSamples& own, Stated& stated) {
   };
   add("height_m", s.height_m, mean_of(own.height_m));
   if (s.kind == "panel") add("width_m", s.panel.width_m, mean_of(own.width_m));
+  add("floor_rough_m", s.floor.rms_m, mean_of(own.floor_rough_m));
+  add("roof_rough_m", s.roof.rms_m, mean_of(own.roof_rough_m));
+  add("rib_rough_m", s.rib.rms_m, mean_of(own.rib_rough_m));
   const auto things = [&](Label label, double asked) {
     const auto found = own.per_100m.find(label);
     if (asked > 0) add(label_name(label) + "_per_100m", asked, found == own.per_100m.end() ? 0 : found->second.back());
@@ -73,9 +78,30 @@ void print_stated(const Stated& stated, Console& console, ordered_json& all) {
   }
 }
 
+using Rows = std::vector<std::pair<std::string, const std::vector<double>*>>;
+
+// OUT/stats.svg and stats.png: of each row how its values are spread, and what was stated.
+void write_plots(const std::string& out, size_t mines, const Rows& rows, const Stated& stated, Console& console) {
+  std::vector<Histogram> all;
+  for (const auto& [name, values] : rows) {
+    const size_t per = name.find("/100m");
+    const auto asked = stated.find(per == std::string::npos ? name : name.substr(0, per) + "_per_100m");
+    if (asked == stated.end())
+      all.push_back({name, *values, {}});
+    else  // densities: of the mines that state one, those without a thing too
+      all.push_back({name, per == std::string::npos ? *values : asked->second.second, asked->second.first});
+  }
+  const Drawing sheet =
+      histogram_sheet(all, "what " + std::to_string(mines) + (mines == 1 ? " mine measures" : " mines measure"));
+  write_text(out + "/stats.svg",
+             to_svg(sheet, "Histograms of what the mines measure, with what their settings state") + "\n");
+  write_png(out + "/stats.png", to_picture(sheet));
+  console.result("plots: " + out + "/stats.svg, stats.png");
+}
+
 }  // namespace
 
-int stats_command(const std::string& dir, Console& console) {
+int stats_command(const std::string& dir, const std::string& out, Console& console) {
   MineSamples samples;
   const std::vector<std::string> mines = worlds_under(dir);
   Stated stated;
@@ -85,9 +111,18 @@ int stats_command(const std::string& dir, Console& console) {
     compare(mine, own, stated);
     append(samples, own);
   }
-  std::vector<std::pair<std::string, const std::vector<double>*>> rows{
-      {"width_m", &samples.width_m},   {"height_m", &samples.height_m},   {"grade_percent", &samples.grade_percent},
-      {"length_m", &samples.length_m}, {"pillar_m2", &samples.pillar_m2}, {"extraction_ratio", &samples.extraction}};
+  std::vector<double> degrees_of;
+  for (const auto& [degree, n] : samples.junctions) degrees_of.insert(degrees_of.end(), n, degree);
+  Rows rows{{"width_m", &samples.width_m},
+            {"height_m", &samples.height_m},
+            {"floor_rough_m", &samples.floor_rough_m},
+            {"roof_rough_m", &samples.roof_rough_m},
+            {"rib_rough_m", &samples.rib_rough_m},
+            {"grade_percent", &samples.grade_percent},
+            {"length_m", &samples.length_m},
+            {"pillar_m2", &samples.pillar_m2},
+            {"extraction_ratio", &samples.extraction},
+            {"junction_degree", &degrees_of}};
   if (!samples.per_100m.empty()) {
     rows.emplace_back("blocked_share", &samples.blocked_share);
     rows.emplace_back("bodies_share", &samples.bodies_share);
@@ -111,6 +146,7 @@ int stats_command(const std::string& dir, Console& console) {
   }
   console.result(degrees);
   print_stated(stated, console, all);
+  write_plots(out.empty() ? dir : out, mines.size(), rows, stated, console);
   console.json(all.dump());
   return 0;
 }

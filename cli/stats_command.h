@@ -8,6 +8,6 @@
 namespace adit {
 
 /// `adit world --stats DIR`: what all mines under a folder measure, taken together.
-int stats_command(const std::string& dir, Console& console);
+int stats_command(const std::string& dir, const std::string& out, Console& console);
 
 }  // namespace adit

@@ -100,6 +100,18 @@ ScanInformation information_of(const TrueScans& scans, const Mesh& mesh, size_t 
   return out;
 }
 
+PositionBound position_bound(const ScanInformation& scan) {
+  Eigen::Matrix2d I = scan.I.topLeftCorner<2, 2>();
+  const Eigen::Vector2d with_yaw = scan.I.topRightCorner<2, 1>();
+  if (scan.I(2, 2) > 0) I -= with_yaw * with_yaw.transpose() / scan.I(2, 2);
+  const Eigen::Vector2d told = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(I).eigenvalues();
+  const double least = 1e-12 * std::max(told[1], 1.0);  // less is rounding
+  const auto deviation = [&](double information) {
+    return information > least ? 1 / std::sqrt(information) : HUGE_VAL;
+  };
+  return {deviation(told[0]), deviation(told[1])};
+}
+
 void add_bound(const MetricList& list, const TrueScans& scans, const Mesh& mesh, int laser, const Pose& X_BS,
                const PathMatch& match, const std::vector<Pose2>& open_loop, const std::string& why) {
   std::string reason = why;

@@ -23,6 +23,12 @@ struct ScanInformation {
   double roughness_m = 0;  // median distance of what a beam met from the line between its neighbours' ends, along it
   int beams = 0;
 };
+/// What a scan tells of its laser's position in plan where the heading has to be found too: standard deviations along the
+/// directions that it tells least and most of. +inf: it leaves that direction open.
+struct PositionBound {
+  double least_m, most_m;
+};
+PositionBound position_bound(const ScanInformation& scan);
 ScanInformation information_of(const TrueScans& scans, const Mesh& mesh, size_t laser, size_t scan);
 
 /// The Cramer-Rao bound of the relative pose of consecutive scans of the mapping laser (twice the covariance of the

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/compare_page.h"
 
+#include "eval/chart_axes.h"
+#include "eval/outline.h"
 #include "eval/ramp.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace adit {
@@ -166,7 +169,84 @@ std::string dot_plots(const SideBySide& all, const std::vector<const ComparedMet
   return html + "</div>\n";
 }
 
+// Groups are told apart by colour and, along the line, by their letter.
+Colour ink_of(size_t group) {
+  constexpr std::array<std::uint32_t, 6> inks = {0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0x56b4e9, 0x6d6a65};
+  return rgb(inks[group % inks.size()]);
+}
+
+struct Curve {
+  const std::vector<double>*along_m, *value_m;
+  size_t group;
+};
+
+// The errors of several paths in one chart, each with its letter at its greatest.
+Drawing path_chart(const std::vector<Curve>& curves, const std::string& words) {
+  Drawing drawing;
+  drawing.width_px = 1200;
+  drawing.height_px = 340;
+  double end = 1e-3, bottom = 0, top = 1e-3;
+  for (const Curve& c : curves) {
+    end = std::max(end, c.along_m->back());
+    for (const double v : *c.value_m) bottom = std::min(bottom, v), top = std::max(top, v);
+  }
+  const double margin = 0.08 * (top - bottom);
+  const Axes axes{{0, bottom < 0 ? bottom - margin : 0}, {end, top + margin}, {76, 34}, {drawing.width_px - 106, 240}};
+  add_axes(drawing, axes, "way driven, m", words);
+  drawing.add(Line{{axes(0, 0), axes(end, 0)}, ink::faint, 1.5});
+  for (const Curve& c : curves) {
+    Line line{{}, ink_of(c.group), 2};
+    for (size_t k = 0; k < c.along_m->size(); ++k) line.p.push_back(axes((*c.along_m)[k], (*c.value_m)[k]));
+    line.p = simplified(line.p, 0.35);
+    drawing.add(std::move(line));
+  }
+  for (const Curve& c : curves) {
+    const auto far = std::max_element(c.value_m->begin(), c.value_m->end(),
+                                      [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const Vec2 at = axes((*c.along_m)[far - c.value_m->begin()], *far);
+    drawing.add(
+        Words{at + Vec2(0, *far < 0 ? 18 : -5),
+              letter(c.group),
+              {.size_px = 18, .colour = ink_of(c.group), .anchor = Anchor::middle, .bold = true, .halo_px = 3}});
+  }
+  return drawing;
+}
+
+std::string paths_html(const SideBySide& all) {
+  std::vector<Curve> plan, height;
+  std::string legend;
+  for (size_t g = 0; g < all.paths.size(); ++g) {
+    const PathErrors& p = all.paths[g];
+    if (p.along_m.size() < 2) continue;
+    plan.push_back({&p.along_m, &p.plan_m, g});
+    height.push_back({&p.along_m, &p.height_m, g});
+    legend += (legend.empty() ? "" : ", ") + letter(g) + " (seed " + std::to_string(p.seed) + ")";
+  }
+  std::string html = "<section aria-labelledby=\"paths\"><h2 id=\"paths\">Errors of the paths</h2>\n";
+  if (plan.empty())
+    return html + "<p class=\"missing\">Not shown: no run's path could be scored again.</p></section>\n";
+  html += "<p class=\"about\">Of one run of each group, laid over each other: " + legend +
+          ". Each path is laid on its own truth by the best rigid fit.</p>\n";
+  for (const auto& [curves, title] :
+       {std::pair(&plan, "in plan, distance, m"), std::pair(&height, "in height, map − truth, m")})
+    html += std::string("<figure><h3>Error ") + title + "</h3>" +
+            to_svg(path_chart(*curves, title),
+                   std::string("Chart of the paths' errors ") + title + ", along the way driven") +
+            "</figure>\n";
+  return html + "</section>\n";
+}
+
 }  // namespace
+
+PathErrors path_errors(const Score& score, int seed) {
+  PathErrors errors{seed, {}, {}, {}};
+  for (const PoseError& p : score.poses) {
+    errors.along_m.push_back(p.along_m);
+    errors.plan_m.push_back(p.p_error_W.head<2>().norm());
+    errors.height_m.push_back(p.p_error_W.z());
+  }
+  return errors;
+}
 
 std::vector<size_t> shown_runs(const std::vector<ScoredRun>& runs, const Comparison& comparison) {
   const std::vector<size_t> group = groups_of(runs);
@@ -219,7 +299,8 @@ std::string comparison_html(const SideBySide& all, const std::vector<std::string
   for (size_t g = 1; g < c.group.size(); ++g) html += verdict_of(c, g, all.headline);
   if (c.group.size() == 1) html += "All runs have the same settings; they differ by their seeds alone.";
   html += "</p>\n" + groups_table(all, link_of) +
-          "<nav aria-label=\"Contents\"><a href=\"#headline\">Headline numbers</a> <a href=\"#plans\">Plans</a> <a "
+          "<nav aria-label=\"Contents\"><a href=\"#headline\">Headline numbers</a> <a href=\"#paths\">Errors of the "
+          "paths</a> <a href=\"#plans\">Plans</a> <a "
           "href=\"#all\">All numbers</a></nav>\n</header>\n<main id=\"main\">\n";
   html +=
       "<section aria-labelledby=\"headline\"><h2 id=\"headline\">Headline numbers</h2>\n<p class=\"about\">Medians, "
@@ -227,6 +308,7 @@ std::string comparison_html(const SideBySide& all, const std::vector<std::string
       "one seed; p is of no difference (headline numbers: corrected for each other by Holm). A group is better or "
       "worse where the difference matters and p is at most 0.05.</p>\n" +
       metric_table(c, first, "Headline numbers") + dot_plots(all, first) + "</section>\n";
+  html += paths_html(all);
   html += "<section aria-labelledby=\"plans\"><h2 id=\"plans\">Plans</h2>\n<div class=\"pair\">\n";
   for (size_t g = 0; g < all.plans.size(); ++g) {
     const Plate& plate = all.plans[g];

@@ -138,9 +138,19 @@ void draw(Picture& picture, const Words& words, double scale) {
   draw_text(picture, scale * words.at.x(), scale * words.at.y(), words.text, type);
 }
 
+// Whether each of a layer's pixels falls on one of the picture's.
+bool fits(const Layer& layer, const Vec2& low, const Vec2& size) {
+  return size.x() == layer.picture.width && size.y() == layer.picture.height && low.x() == std::round(low.x()) &&
+         low.y() == std::round(low.y());
+}
+
 // Each pixel takes the mean of the layer's pixels below it, or its nearest where the layer is the coarser one.
 void draw(Picture& picture, const Layer& layer, double scale) {
   const Vec2 low = scale * layer.low, size = scale * (layer.high - layer.low);
+  if (fits(layer, low, size)) {
+    paste(picture, layer.picture, static_cast<int>(low.x()), static_cast<int>(low.y()));
+    return;
+  }
   const double per_x = layer.picture.width / size.x(), per_y = layer.picture.height / size.y();
   for (int y = std::max(0, static_cast<int>(low.y())); y < std::min<double>(picture.height, low.y() + size.y()); ++y)
     for (int x = std::max(0, static_cast<int>(low.x())); x < std::min<double>(picture.width, low.x() + size.x()); ++x) {

@@ -67,10 +67,12 @@ Figure grid_plan(const Exhibit& exhibit);          // Fig. 4: occupancy grid
 Figure closures_plan(const Exhibit& exhibit);      // loop closures over the plan
 Figure error_chart(const Exhibit& exhibit);        // error of the path along the way driven
 /// In space.
-Figure cutaway_view(const Exhibit& exhibit);          // Fig. 5: the mine with its roof lifted off, coloured by error
-Figure chamber_view(const Exhibit& exhibit);          // the same near the worst place, closer
-Figure interior_view(const Exhibit& exhibit, int k);  // Fig. 6: from the path, truth beside map
-Figure coverage_view(const Exhibit& exhibit);         // what of the true rock the rig's beams met
+Figure cutaway_view(const Exhibit& exhibit);             // Fig. 5: the mine with its roof lifted off, coloured by error
+Figure chamber_view(const Exhibit& exhibit);             // the same near the worst place, closer
+Figure interior_view(const Exhibit& exhibit, int k);     // Fig. 6: from the path, truth beside map
+Figure coverage_view(const Exhibit& exhibit);            // what of the true rock the rig's beams met
+Figure mine_view(const Exhibit& exhibit);                // the true mine alone, by a lamp
+Figure thing_view(const Exhibit& exhibit, Label label);  // a thing in it, or what fell
 /// settings.frames views along the path, truth beside map; none where there is none to take.
 struct AlongFrame {
   double along_m = 0;

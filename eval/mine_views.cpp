@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/mine_views.h"
 
+#include "eval/lamp.h"
 #include "eval/outline.h"
 #include "eval/plan.h"
-#include "eval/scene.h"
 #include "rays/caster.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace adit {
 namespace {
 
 constexpr double best_sight_m = 30;  // beyond it more sight makes no better picture
-constexpr double lit_m = 80;
 
-struct Place {
-  Vec3 eye, ahead;
+struct Place : Lookout {
   double sight_m;
 };
 
@@ -56,29 +56,11 @@ std::vector<Place> places_of(const World& world) {
         const double sight = caster.nearest(Ray{eye, ahead, 200}).range_m;
         // Of a mesh that is a part of the mine: not from beyond it, nor out of it.
         if (!std::isfinite(sight) || !std::isfinite(caster.nearest(Ray{eye, {0, 0, -1}, 10}).range_m)) continue;
-        places.push_back({eye, ahead, std::min(best_sight_m, sight)});
+        places.push_back({{eye, ahead}, std::min(best_sight_m, sight)});
       }
     }
   }
   return places;
-}
-
-Picture look(const World& world, const std::vector<float>& bright, const Place& place, int width, int height) {
-  Camera camera;
-  camera.eye = place.eye;
-  camera.target = place.eye + place.ahead - Vec3(0, 0, 0.05);
-  camera.fov_rad = 1.15;
-  camera.near_m = 0.08;
-  camera.far_m = 150;
-  Scene scene;
-  scene.light = Light::headlamp;
-  scene.background = rgb(0x0d0d0e);
-  const Mesh& mesh = world.mesh;
-  scene.skins.push_back(skin_of(
-      mesh, [&](std::uint32_t v, Label label) { return colour_of(mesh, bright, v, label); },
-      [&](size_t f) { return (mesh.corner(f, 0) - place.eye).norm() < lit_m; }));
-  scene.skins.back().rock = 1;
-  return take_picture(scene, camera, width, height);
 }
 
 // As the truth tells it, else from the mesh.
@@ -119,7 +101,81 @@ Picture plan_picture(const World& world, int width_px) {
   return to_picture(drawing);
 }
 
+// Up to so many places on what bears a label, evenly taken from its faces.
+std::vector<Vec3> pieces_of(const World& world, Label label) {
+  constexpr size_t most = 400;
+  const Mesh& mesh = world.mesh;
+  std::vector<size_t> faces;
+  for (size_t f = 0; f < mesh.face.size(); ++f)
+    if (label_of(mesh, f) == label) faces.push_back(f);
+  std::vector<Vec3> pieces;
+  for (size_t k = 0; k < faces.size(); k += 1 + faces.size() / most) {
+    const size_t f = faces[k];
+    pieces.push_back((mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)) / 3);
+  }
+  return pieces;
+}
+
+// The way to look from a place to see the most of some pieces, those some 4 m away above all.
+struct Outlook {
+  double worth = 0;
+  Vec3 to = Vec3::Zero();
+};
+Outlook outlook_of(const Caster& caster, const std::vector<Vec3>& pieces, const Vec3& eye) {
+  constexpr int ways = 12;  // a picture is some three of them wide
+  std::array<Outlook, ways> of_way;
+  for (const Vec3& piece : pieces) {
+    const Vec3 to = piece - eye;
+    const double far = to.norm();
+    if (far < 1.5 || far > 9 || caster.nearest(Ray{eye, to / far, far + 1}).range_m < far - 0.02) continue;
+    const double worth = std::exp(-0.15 * (far - 4) * (far - 4));
+    const int way = static_cast<int>(std::floor((std::atan2(to.y(), to.x()) / std::numbers::pi + 1) / 2 * ways)) % ways;
+    for (const int beside : {-1, 0, 1}) {
+      Outlook& own = of_way[(way + beside + ways) % ways];
+      own.worth += worth * (beside == 0 ? 1.0 : 0.5);
+      own.to += worth * to / far;
+    }
+  }
+  return *std::max_element(of_way.begin(), of_way.end(),
+                           [](const Outlook& a, const Outlook& b) { return a.worth < b.worth; });
+}
+
 }  // namespace
+
+Picture look_into(const World& world, const Camera& camera, int width, int height, double lamp_m) {
+  const Mesh& mesh = world.mesh;
+  const std::vector<float> bright = brightness(mesh);
+  const auto lit = lit_from(camera, static_cast<double>(width) / height);
+  Scene scene;
+  scene.lamp_m = lamp_m;
+  scene.skins = mine_skins(
+      mesh, [&](std::uint32_t v, Label label) { return colour_of(mesh, bright, v, label); },
+      [&](size_t f) { return lit(mesh.corner(f, 0)); });
+  return take_lamp_picture(std::move(scene), camera, width, height);
+}
+
+std::optional<Lookout> longest_sight(const World& world) {
+  const std::vector<Place> places = places_of(world);
+  if (places.empty()) return {};
+  return *std::max_element(places.begin(), places.end(),
+                           [](const Place& a, const Place& b) { return a.sight_m < b.sight_m; });
+}
+
+std::optional<Lookout> lookout_to(const World& world, Label label) {
+  const Caster caster(world.mesh);
+  const std::vector<Vec3> pieces = pieces_of(world, label);
+  std::optional<Lookout> best;
+  double most = 0;
+  for (const Passage& p : world.passages)
+    for (const Vec3& foot : p.centre_line) {
+      const Vec3 eye = foot + Vec3(0, 0, 0.68 * p.height_m);
+      const Outlook outlook = outlook_of(caster, pieces, eye);
+      if (outlook.worth <= most) continue;
+      most = outlook.worth;
+      best = Lookout{eye, outlook.to.normalized()};
+    }
+  return best;
+}
 
 std::vector<MineView> mine_views(const World& world, int width_px) {
   if (world.passages.empty() || world.mesh.face.empty()) return {};
@@ -127,7 +183,6 @@ std::vector<MineView> mine_views(const World& world, int width_px) {
   views.push_back({"plan", plan_picture(world, width_px)});
   const std::vector<Place> places = places_of(world);
   if (places.empty()) return views;
-  const std::vector<float> bright = brightness(world.mesh);
   // The first has the longest sight; the second is the one that trades sight for distance from the first best.
   const auto first = std::max_element(places.begin(), places.end(),
                                       [](const Place& a, const Place& b) { return a.sight_m < b.sight_m; });
@@ -137,8 +192,8 @@ std::vector<MineView> mine_views(const World& world, int width_px) {
   const auto second = std::max_element(places.begin(), places.end(),
                                        [&](const Place& a, const Place& b) { return worth(a) < worth(b); });
   const int height = 2 * (width_px * 5 / 16);
-  views.push_back({"interior-1", look(world, bright, *first, width_px, height)});
-  views.push_back({"interior-2", look(world, bright, *second, width_px, height)});
+  views.push_back({"interior-1", look_into(world, camera_of(*first), width_px, height)});
+  views.push_back({"interior-2", look_into(world, camera_of(*second), width_px, height)});
   return views;
 }
 

@@ -82,10 +82,20 @@ std::string chapter_html(const Chapter& chapter) {
   return html + "</section>\n";
 }
 
+// A dotted name, which narrow screens may break after its dots and strokes.
+std::string breakable(const std::string& name) {
+  std::string html;
+  for (const char c : name) {
+    html += escaped(std::string(1, c));
+    if (c == '.' || c == '_') html += "<wbr>";
+  }
+  return html;
+}
+
 std::string metric_row(const Metric& m, const std::string& group) {
   std::string value = plain_number(m.value, 4);
   if (!std::isfinite(m.value) && !m.why.empty()) value += " (" + m.why + ")";
-  return "<tr><td><code>" + escaped(m.name.substr(std::min(m.name.size(), group.size() + 1))) +
+  return "<tr><td><code>" + breakable(m.name.substr(std::min(m.name.size(), group.size() + 1))) +
          "</code></td><td class=\"n\">" + escaped(value) + "</td><td>" + escaped(unit_words(m.unit)) + "</td><td>" +
          (m.better == Better::lower ? "lower" : "higher") + "</td><td class=\"n\">" + std::to_string(m.n) +
          "</td></tr>\n";

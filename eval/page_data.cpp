@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "base/polyline.h"
+#include "eval/bound.h"
 #include "eval/packed.h"
 #include "eval/page_space.h"
 
@@ -20,7 +21,8 @@ using nlohmann::ordered_json;
 
 constexpr size_t most_poses = 3000;
 constexpr int bins = 60;
-constexpr double farthest_m = 40;  // of points from the laser
+constexpr double farthest_m = 40;   // of points from the laser
+constexpr size_t most_scans = 300;  // whose information is told
 
 // To a thousandth unless more is asked for; null where there is no number.
 ordered_json number(double value, double parts = 1e3) {
@@ -89,6 +91,32 @@ ordered_json path_json(const Exhibit& x) {
   if (std::any_of(sigma.begin(), sigma.end(), [](double s) { return std::isfinite(s); }))
     json["sigma"] = numbers(sigma, 1e4);
   return json;
+}
+
+// What single scans of the mapping laser could tell at best, by the true way driven.
+ordered_json information_json(const Exhibit& x) {
+  const Truth& truth = x.input.truth;
+  const Trajectory& path = truth.drive.path;
+  const int laser = find_view(x.input.log.rig, View::horizontal);
+  if (!x.has_world() || laser < 0 || static_cast<size_t>(laser) >= truth.scans.size() || path.size() < 2)
+    return nullptr;
+  const TrueScans scans(truth, x.input.world.mesh);
+  const size_t n = scans.scans(laser), step = 1 + n / most_scans;
+  const std::vector<double> way = distance_along(path);
+  std::vector<double> along, least((n + step - 1) / step), most(least.size());
+  for (size_t k = 0; k < least.size(); ++k) {
+    const double t = truth.scans[laser].stamp_s[k * step];
+    const auto at = std::lower_bound(path.stamp_s.begin(), path.stamp_s.end(), t) - path.stamp_s.begin();
+    along.push_back(way[std::min<size_t>(at, path.size() - 1)]);
+  }
+  parallel_for(
+      least.size(),
+      [&](size_t k) {
+        const PositionBound bound = position_bound(information_of(scans, x.input.world.mesh, laser, k * step));
+        least[k] = bound.least_m, most[k] = bound.most_m;
+      },
+      8);
+  return {{"along", numbers(along, 1e2)}, {"least", numbers(least, 1e6)}, {"most", numbers(most, 1e6)}};
 }
 
 // Stretches of the path that the scans leave open, by the stamps of the map.
@@ -184,14 +212,21 @@ ordered_json mesh_json(const SpaceMesh& mesh) {
 ordered_json space_json(const Exhibit& x) {
   if (!x.has_surface() && !x.has_world() && x.path_W.size() < 2) return nullptr;
   const Raster raster = raster_of(x);
+  ordered_json map, mine;
+  parallel_for(2, [&](size_t k) {
+    if (k == 0)
+      map = mesh_json(map_in_space(x, raster));
+    else
+      mine = mesh_json(mine_in_space(x, raster));
+  });
   ordered_json ramp = ordered_json::array();
   for (int k = 0; k < 255; ++k)
     ramp.push_back(hex_of(x.ramp.colour(x.ramp.low + k * (x.ramp.high - x.ramp.low) / 254)));
   ordered_json json = {{"low", {number(raster.low.x()), number(raster.low.y()), number(raster.low.z())}},
                        {"step", raster.step_m},
                        {"ramp", ramp},
-                       {"map", mesh_json(map_in_space(x, raster))},
-                       {"mine", mesh_json(mine_in_space(x, raster))}};
+                       {"map", std::move(map)},
+                       {"mine", std::move(mine)}};
   std::vector<double> truth;
   const Trajectory& true_path = x.input.truth.drive.path;
   for (size_t i = 0; i < true_path.size(); i += 1 + true_path.size() / most_poses)
@@ -231,6 +266,7 @@ std::string page_data(const Exhibit& x, const Figure& wide, const Figure& narrow
   json["plan"] = {{"wide", frame_json(wide)}, {"narrow", frame_json(narrow)}};
   json["range"] = number(x.ramp.high);
   json["path"] = path_json(x);
+  json["information"] = information_json(x);
   json["degenerate"] = degenerate_json(x);
   json["histogram"] = histogram_json(x);
   json["reach"] = reach_json(x);

@@ -47,7 +47,7 @@ table { border-collapse: collapse; font-size: .9rem; width: 100%; font-variant-n
 th, td { text-align: left; padding: .28em .8em .28em 0; border-bottom: 1px solid var(--rule); vertical-align: top; }
 th { color: var(--faint); font-weight: 600; }
 td.n, th.n { text-align: right; white-space: nowrap; }
-td code { overflow-wrap: anywhere; }
+td code { overflow-wrap: break-word; }
 summary { cursor: pointer; font-weight: 600; padding: .4em 0; }
 pre { background: var(--panel); border-radius: 8px; padding: 1em; overflow-x: auto; font-size: .82rem; line-height: 1.45; }
 .scroll { overflow-x: auto; }
@@ -111,8 +111,9 @@ footer { margin: 3em auto 2em; color: var(--faint); font-size: .85rem; }
   .has-narrow .narrow { display: block; }
   .plate { overflow-x: auto; }
   .plate.big svg { min-width: 680px; }
+  .plate.big + figcaption::before { content: "Swipe the picture sideways to see the whole of it. "; font-weight: 600; }
 }
-@media print { h2, h3 { break-after: avoid; } nav, .skip, .slider, .toggles, .buttons { display: none; } .tall { max-height: none; } figure, tr, .numbers div { break-inside: avoid; } body { font-size: 11pt; } details > * { display: block; } }
+@media print { h2, h3 { break-after: avoid; } nav, .skip, .slider, .toggles, .buttons { display: none; } .tall { max-height: none; } .scroll { overflow: visible; } table { font-size: 8pt; } td, th { padding: .1em .6em .1em 0; } th.n { white-space: normal; } .sortable th button::after { content: ""; } details::details-content { content-visibility: visible; } pre { white-space: pre-wrap; columns: 3; font-size: 7pt; } figure, tr, .numbers div { break-inside: avoid; } body { font-size: 11pt; } details > * { display: block; } }
 )css";
 
 }  // namespace adit

@@ -14,14 +14,29 @@ const Metric* had(const Score& score, const std::string& name) {
   return m && std::isfinite(m->value) ? m : nullptr;
 }
 
+// A length that bounds a number: "95 % below 6.1 cm".
+std::string bound_words(const Score& score, const std::string& before, const std::string& name) {
+  const Metric* m = had(score, name);
+  return m ? before + plain_number(100 * m->value, 2) + " cm" : "";
+}
+
 KeyNumber number_of(const Score& score, const std::string& label, const std::string& name, const std::string& unit,
-                    double factor, const std::string& of_what, bool sign = false) {
+                    double factor, const std::string& of_what, bool sign = false, const std::string& bound = "") {
   const Metric* m = score.find(name);
   if (!m) return {label, "–", "", "not scored"};
   if (!std::isfinite(m->value)) return {label, "–", "", m->why.empty() ? "could not be had" : m->why};
   const std::string plus = sign && m->value > 0 ? "+" : "";
-  const std::string note = m->n > 1 && !of_what.empty() ? "over " + std::to_string(m->n) + " " + of_what : "";
+  std::string note = m->n > 1 && !of_what.empty() ? "over " + std::to_string(m->n) + " " + of_what : "";
+  if (!bound.empty()) note = bound + (note.empty() ? "" : ", " + note);
   return {label, plus + plain_number(factor * m->value), unit, note};
+}
+
+// The two shares whose harmonic mean f is.
+std::string agreement_words(const Score& score) {
+  const Metric *precision = had(score, "map.se3.precision_10cm"), *recall = had(score, "map.se3.recall_10cm");
+  if (!precision || !recall) return "";
+  return plain_number(100 * precision->value) + " % of the map, " + plain_number(100 * recall->value) +
+         " % of the rock";
 }
 
 KeyNumber loops_of(const Score& score) {
@@ -59,6 +74,9 @@ KeyNumber volume_of(const Score& score) {
   KeyNumber k = number_of(score, "volume error", "volume.error_percent", "%", 1, "", true);
   if (const Metric* seen = had(score, "volume.observable_m3"); seen && k.note.empty())
     k.note = "of " + plain_number(seen->value, 4) + " m³ that could be seen";
+  if (const Metric* sigma = had(score, "volume.sigma_percent"))
+    k.note += (k.note.empty() ? "" : "; ") + std::string("by the map itself ± ") +
+              plain_number(1.96 * sigma->value, 2) + " % (95 %)";
   return k;
 }
 
@@ -66,9 +84,11 @@ KeyNumber volume_of(const Score& score) {
 
 std::vector<KeyNumber> key_numbers(const ReportInput& in) {
   const Score& s = in.score;
-  return {number_of(s, "path error, rms in plan", "trajectory.se3.ate_xy_rmse_m", "cm", 100, "poses"),
-          number_of(s, "map to rock, mean distance", "map.se3.mae_m", "cm", 100, "points"),
-          number_of(s, "map and rock agree to 10 cm", "map.se3.f_10cm", "%", 100, "points"),
+  return {number_of(s, "path error, rms in plan", "trajectory.se3.ate_xy_rmse_m", "cm", 100, "poses", false,
+                    bound_words(s, "in space at most ", "trajectory.se3.ate_max_m")),
+          number_of(s, "map to rock, mean distance", "map.se3.mae_m", "cm", 100, "points", false,
+                    bound_words(s, "95 % below ", "map.se3.p95_m")),
+          number_of(s, "map and rock agree to 10 cm", "map.se3.f_10cm", "%", 100, "", false, agreement_words(s)),
           volume_of(s),
           loops_of(s),
           worst_of(s)};

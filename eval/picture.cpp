@@ -38,6 +38,10 @@ Picture::Picture(int width_px, int height_px, Colour background)
 void blend(Picture& picture, int x, int y, Colour colour, double coverage) {
   if (!picture.contains(x, y)) return;
   Colour& under = picture.at(x, y);
+  if (coverage >= 1 && colour.a == 255) {
+    under = colour;
+    return;
+  }
   const double over = std::clamp(coverage, 0.0, 1.0) * colour.a / 255;
   const double rest = under.a / 255.0 * (1 - over), alpha = over + rest;
   if (alpha <= 0) return;

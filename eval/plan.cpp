@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <span>
 
 namespace adit {
@@ -143,23 +144,47 @@ void add_colour_bar(Drawing& drawing, const Ramp& ramp, const Vec2& at_px, doubl
   }
 }
 
+namespace {
+
+// Where the number of ring k stands: on the ring, up to the right unless another ring or number is nearer than elsewhere.
+Vec2 tag_of(const std::vector<Vec2>& rings, const std::vector<Vec2>& tags, size_t k, double radius_px) {
+  constexpr std::array<double, 8> ways = {45, 135, -45, -135, 90, -90, 0, 180};
+  const double ring_px = 1.9 * radius_px, enough_px = 2.2 * radius_px;
+  Vec2 best = rings[k];
+  double most = -1;
+  for (const double way : ways) {
+    const double a = way * std::numbers::pi / 180;
+    const Vec2 tag = rings[k] + 1.06 * ring_px * Vec2(std::cos(a), -std::sin(a));
+    double clear = enough_px;
+    for (const Vec2& other : tags) clear = std::min(clear, (other - tag).norm());
+    for (size_t j = 0; j < rings.size(); ++j)
+      if (j != k) clear = std::min(clear, std::abs((rings[j] - tag).norm() - ring_px) + radius_px);
+    if (clear > most + 1e-9) most = clear, best = tag;
+  }
+  return best;
+}
+
+}  // namespace
+
 void add_marks(Drawing& drawing, const PlanFrame& frame, const std::vector<Vec2>& places_W, double radius_px,
                const std::vector<std::string>& titles, const std::string& link_stem) {
-  for (size_t k = places_W.size(); k-- > 0;) {
-    const Vec2 at = frame(places_W[k]);
+  std::vector<Vec2> rings, tags;
+  for (const Vec2& p : places_W) rings.push_back(frame(p));
+  for (size_t k = 0; k < rings.size(); ++k) tags.push_back(tag_of(rings, tags, k, radius_px));
+  for (size_t k = rings.size(); k-- > 0;)
+    for (const auto& [colour, width] : {std::pair(ink::white, 6.0), std::pair(ink::mark, 2.5)})
+      drawing.add(
+          Disc{.centre = rings[k], .radius_px = 1.9 * radius_px, .fill = {0, 0, 0, 0}, .rim = colour, .rim_px = width});
+  for (size_t k = rings.size(); k-- > 0;) {
     const std::string number = std::to_string(k + 1);
-    drawing.add(Disc{.centre = at, .radius_px = 1.9 * radius_px, .fill = {0, 0, 0, 0}, .rim = ink::white, .rim_px = 6});
-    drawing.add(
-        Disc{.centre = at, .radius_px = 1.9 * radius_px, .fill = {0, 0, 0, 0}, .rim = ink::mark, .rim_px = 2.5});
-    const Vec2 tag = at + 1.9 * radius_px * Vec2(0.75, -0.75);
-    drawing.add(Disc{.centre = tag,
+    drawing.add(Disc{.centre = tags[k],
                      .radius_px = radius_px,
                      .fill = ink::mark,
                      .rim = ink::white,
                      .rim_px = 2,
                      .link = link_stem.empty() ? "" : link_stem + number,
                      .title = k < titles.size() ? titles[k] : ""});
-    drawing.add(Words{tag + Vec2(0, 0.42 * radius_px),
+    drawing.add(Words{tags[k] + Vec2(0, 0.42 * radius_px),
                       number,
                       {.size_px = 1.2 * radius_px, .colour = ink::white, .anchor = Anchor::middle, .bold = true}});
   }

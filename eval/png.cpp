@@ -45,8 +45,8 @@ std::string encode_png(const Picture& picture) {
   png_infop info = png_create_info_struct(png);
   std::string bytes;
   png_set_write_fn(png, &bytes, write_some, nullptr);
-  // A few percent larger than at libpng's own choice, in a third of the time.
-  png_set_compression_level(png, 3);
+  // A tenth larger than at libpng's own choice, in a fifth of the time.
+  png_set_compression_level(png, 1);
   png_set_filter(png, 0, PNG_FILTER_SUB);
   png_set_IHDR(png, info, picture.width, picture.height, 8, opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGB_ALPHA,
                PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);

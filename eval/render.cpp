@@ -18,7 +18,8 @@ const std::vector<std::pair<std::string, std::function<Figure(const Exhibit&)>>>
   static const std::vector<std::pair<std::string, std::function<Figure(const Exhibit&)>>> all = {
       {"plan", error_plan},      {"truth", truth_plan},     {"raw", raw_plan},      {"aligned", aligned_plan},
       {"rounds", rounds_plan},   {"errors", error_chart},   {"grid", grid_plan},    {"closures", closures_plan},
-      {"cutaway", cutaway_view}, {"chamber", chamber_view}, {"tilt", tilt_section}, {"coverage", coverage_view}};
+      {"cutaway", cutaway_view}, {"chamber", chamber_view}, {"tilt", tilt_section}, {"coverage", coverage_view},
+      {"mine", mine_view}};
   return all;
 }
 
@@ -30,16 +31,24 @@ int number_after(const std::string& view, const std::string& stem) {
   return 0;
 }
 
+// The label of "thing-crib".
+std::optional<Label> thing_in(const std::string& view) {
+  for (const auto& [name, id] : label_ids())
+    if (static_cast<Label>(id) >= Label::rubble && view == "thing-" + name) return static_cast<Label>(id);
+  return {};
+}
+
 Figure view_of_name(const std::string& name, const Exhibit& exhibit) {
   for (const auto& [known, make] : views())
     if (known == name) return make(exhibit);
+  if (const auto label = thing_in(name)) return thing_view(exhibit, *label);
   if (const int k = number_after(name, "interior-")) return interior_view(exhibit, k - 1);
   return spot_view(exhibit, number_after(name, "spot-") - 1);
 }
 
 bool exists(const std::string& name) {
   return std::any_of(views().begin(), views().end(), [&](const auto& v) { return v.first == name; }) ||
-         number_after(name, "interior-") || number_after(name, "spot-");
+         number_after(name, "interior-") || number_after(name, "spot-") || thing_in(name);
 }
 
 }  // namespace
@@ -50,6 +59,7 @@ std::vector<std::string> view_names() {
   names.push_back(animated);
   for (const std::string stem : {"interior-", "spot-"})
     for (int k = 1; k <= 3; ++k) names.push_back(stem + std::to_string(k));
+  names.push_back("thing-crib");
   return names;
 }
 
@@ -62,9 +72,11 @@ Exhibit exhibit_for(const std::string& view, const ReportInput& input, const Rep
     for (const std::string& name : view_names()) known += (known.empty() ? "" : ", ") + name;
     throw Error("view '" + view + "': there is none of that name; there are " + known);
   }
-  const bool in_space = view == "cutaway" || view == "chamber" || number_after(view, "interior-") > 0;
+  const bool in_space =
+      view == "cutaway" || view == "chamber" || view == "mine" || thing_in(view) || number_after(view, "interior-") > 0;
   if (viewpoint && !in_space)
-    throw Error("view '" + view + "': it takes no viewpoint; those that do are cutaway, chamber and interior-1");
+    throw Error("view '" + view +
+                "': it takes no viewpoint; those that do are cutaway, chamber, interior-1, mine and thing-crib");
   if (viewpoint && (viewpoint->target - viewpoint->eye).norm() < 1e-6)
     throw Error("view '" + view + "': the eye stands where it looks at");
   ReportSettings all = settings;

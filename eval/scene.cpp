@@ -19,6 +19,10 @@ std::optional<Vec3> project(const Camera& camera, int width, int height, const V
 
 namespace {
 
+// Bodies have sharp edges, and what fell lies in pieces.
+bool creased(Label label) {
+  return label == Label::rubble || label == Label::talus || is_object(label);
+}
 bool round(Label label) {
   return label == Label::post || label == Label::pipe || label == Label::cable || label == Label::water;
 }
@@ -39,8 +43,8 @@ Skin skin_of(const Mesh& mesh, const std::function<Colour(std::uint32_t, Label)>
     std::array<std::uint32_t, 3> face;
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t v = mesh.face[f][k];
-      std::uint32_t own = none;  // bodies have sharp edges
-      std::uint32_t& index = is_object(label) && !round(label) ? own : copy[v][static_cast<int>(label) % labels];
+      std::uint32_t own = none;
+      std::uint32_t& index = creased(label) && !round(label) ? own : copy[v][static_cast<int>(label) % labels];
       if (index == none) {
         index = static_cast<std::uint32_t>(skin.p.size());
         skin.p.push_back(mesh.vertex[v].cast<float>());

@@ -19,7 +19,8 @@ struct Skin {
   std::vector<Colour> colour;              // (n)
   std::vector<std::array<std::uint32_t, 3>> face;
   Sides sides = Sides::both;
-  float rock = 0;  // 0..1: strength of the painted-on texture of rock
+  float rock = 0;   // 0..1: strength of the painted-on texture of rock
+  float gloss = 0;  // 0..1: of a surface of water
 };
 
 /// Round dots of a size in metres, at least `least_px` wide.

@@ -18,13 +18,14 @@ namespace adit {
 
 namespace {
 
-const char* vertex_shader = R"(#version 330 core
+// Both begin with the version and, for dots, `#define DOTS`: where a shader may discard, Mesa shades what lies hidden too.
+const char* vertex_shader = R"(
 layout(location = 0) in vec3 p;
 layout(location = 1) in vec3 n;
 layout(location = 2) in vec4 c;
 uniform mat4 X_CW;
 uniform mat4 projection;
-uniform float dot_px, least_px;  // dot size in pixels at depth 1 (perspective) or everywhere; 0 = no dots
+uniform float dot_px, least_px;  // dot size in pixels at depth 1 (perspective) or everywhere
 uniform bool perspective;
 out vec3 p_W, p_C, n_W;
 out vec4 tint;
@@ -38,12 +39,12 @@ void main() {
   gl_PointSize = max(least_px, perspective ? dot_px / max(0.01, -at.z) : dot_px);
 })";
 
-const char* fragment_shader = R"(#version 330 core
+const char* fragment_shader = R"(
 in vec3 p_W, p_C, n_W;
 in vec4 tint;
 uniform vec3 eye, forward;
-uniform bool perspective, dots, headlamp;
-uniform float rock, lamp;
+uniform bool perspective, headlamp;
+uniform float rock, gloss, lamp;
 out vec4 colour;
 
 float hash(vec3 p) {
@@ -71,34 +72,35 @@ vec4 grain(vec3 p) {
 }
 
 void main() {
-  if (dots) {
-    vec2 d = 2.0 * gl_PointCoord - 1.0;
-    if (dot(d, d) > 1.0) discard;
-  }
+#ifdef DOTS
+  vec2 d = 2.0 * gl_PointCoord - 1.0;
+  if (dot(d, d) > 1.0) discard;
+#endif
   vec3 to_eye = perspective ? normalize(eye - p_W) : -forward;
-  float light = 1.0, gloss = 0.0;
+  float light = 1.0;
   vec3 base = tint.rgb;
   float distance_m = length(p_C);
-  if (!dots) {
-    vec3 n = normalize(n_W);
-    if (rock > 0.0) {
-      vec4 g = grain(p_W);
-      float near = 1.0 / (1.0 + 0.02 * distance_m * distance_m);
-      n = normalize(n - rock * near * 0.10 * (g.xyz - n * dot(g.xyz, n)));
-      base *= mix(1.0, 0.62 + 0.76 * g.w, rock);
-    }
-    if (dot(n, to_eye) < 0.0) n = -n;
-    float head = dot(n, to_eye);
-    if (headlamp) {
-      light = 0.25 + 0.75 * pow(head, 0.8);
-    } else {
-      float sky = 0.5 + 0.5 * n.z;
-      float key = max(0.0, dot(n, normalize(vec3(-0.5, -0.35, 0.8))));
-      light = 0.40 + 0.24 * sky + 0.22 * key + 0.24 * head;
-    }
+#ifndef DOTS
+  vec3 n = normalize(n_W);
+  if (rock > 0.0) {
+    vec4 g = grain(p_W);
+    float near = 1.0 / (1.0 + 0.02 * distance_m * distance_m);
+    n = normalize(n - rock * near * 0.10 * (g.xyz - n * dot(g.xyz, n)));
+    base *= mix(1.0, 0.62 + 0.76 * g.w, rock);
   }
-  if (headlamp) light *= (rock > 0.0 ? 1.8 : 1.2) / (1.0 + pow(distance_m / lamp, 1.6));
-  colour = vec4(min(base * light + gloss, vec3(1.0)), 1.0);
+  if (dot(n, to_eye) < 0.0) n = -n;
+  float head = dot(n, to_eye);
+  base = mix(base, vec3(0.30, 0.33, 0.35), gloss * pow(1.0 - head, 4.0));  // what still water mirrors at a low angle
+  if (headlamp) {
+    light = 0.25 + 0.75 * pow(head, 0.8);
+  } else {
+    float sky = 0.5 + 0.5 * n.z;
+    float key = max(0.0, dot(n, normalize(vec3(-0.5, -0.35, 0.8))));
+    light = 0.40 + 0.24 * sky + 0.22 * key + 0.24 * head;
+  }
+#endif
+  if (headlamp) light *= mix(1.2, 1.8, rock) / (1.0 + pow(distance_m / lamp, 1.6));
+  colour = vec4(min(base * light, vec3(1.0)), 1.0);
 })";
 
 // One context for the process: making one compiles the shaders, and Mesa's is not for two threads at once.
@@ -115,15 +117,19 @@ class Stage {
     buffer.assign(static_cast<size_t>(width) * height, Colour{});
     if (!OSMesaMakeCurrent(context_, buffer.data(), GL_UNSIGNED_BYTE, width, height))
       throw Error("pictures: OSMesa gives no picture of " + std::to_string(width) + " x " + std::to_string(height));
-    if (program_ == 0) build_program();
+    if (program_[0] == 0)
+      for (const bool dots : {false, true}) program_[dots] = linked(dots ? "#define DOTS" : "");
     glViewport(0, 0, width, height);
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_PROGRAM_POINT_SIZE);
     glClearColor(background.r / 255.f, background.g / 255.f, background.b / 255.f, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    glUseProgram(program_);
   }
-  GLint uniform(const char* name) const { return glGetUniformLocation(program_, name); }
+  void use(bool dots) {
+    used_ = program_[dots];
+    glUseProgram(used_);
+  }
+  GLint uniform(const char* name) const { return glGetUniformLocation(used_, name); }
 
   std::vector<Colour> buffer;
 
@@ -145,9 +151,10 @@ class Stage {
   }
   ~Stage() { OSMesaDestroyContext(context_); }
 
-  static GLuint compile(GLenum kind, const char* source) {
+  static GLuint compile(GLenum kind, const char* defined, const char* body) {
     const GLuint shader = glCreateShader(kind);
-    glShaderSource(shader, 1, &source, nullptr);
+    const char* source[] = {"#version 330 core\n", defined, body};
+    glShaderSource(shader, 3, source, nullptr);
     glCompileShader(shader);
     GLint good = 0;
     glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
@@ -158,18 +165,20 @@ class Stage {
     }
     return shader;
   }
-  void build_program() {
-    program_ = glCreateProgram();
-    glAttachShader(program_, compile(GL_VERTEX_SHADER, vertex_shader));
-    glAttachShader(program_, compile(GL_FRAGMENT_SHADER, fragment_shader));
-    glLinkProgram(program_);
+  static GLuint linked(const char* defined) {
+    const GLuint program = glCreateProgram();
+    glAttachShader(program, compile(GL_VERTEX_SHADER, defined, vertex_shader));
+    glAttachShader(program, compile(GL_FRAGMENT_SHADER, defined, fragment_shader));
+    glLinkProgram(program);
     GLint good = 0;
-    glGetProgramiv(program_, GL_LINK_STATUS, &good);
+    glGetProgramiv(program, GL_LINK_STATUS, &good);
     ADIT_CHECK(good);
+    return program;
   }
 
   OSMesaContext context_ = nullptr;
-  GLuint program_ = 0;
+  std::array<GLuint, 2> program_ = {};  // of faces, of dots
+  GLuint used_ = 0;
 };
 
 // Vertex arrays that live as long as one drawing.
@@ -241,7 +250,7 @@ Eigen::Matrix4f projection_of(const Camera& camera, double aspect) {
   return P.cast<float>();
 }
 
-void set_camera(const Stage& stage, const Camera& camera, double aspect) {
+void set_look(const Stage& stage, const Scene& scene, const Camera& camera, double aspect) {
   const Eigen::Matrix4f view = view_of(camera), projection = projection_of(camera, aspect);
   const Eigen::Vector3f eye = camera.eye.cast<float>(),
                         forward = (camera.target - camera.eye).normalized().cast<float>();
@@ -250,17 +259,37 @@ void set_camera(const Stage& stage, const Camera& camera, double aspect) {
   glUniform3fv(stage.uniform("eye"), 1, eye.data());
   glUniform3fv(stage.uniform("forward"), 1, forward.data());
   glUniform1i(stage.uniform("perspective"), camera.fov_rad > 0);
+  glUniform1i(stage.uniform("headlamp"), scene.light == Light::headlamp);
+  glUniform1f(stage.uniform("lamp"), static_cast<float>(scene.lamp_m));
 }
 
-void draw(const Stage& stage, const Skin& skin) {
+// A skin's faces, nearest first as far as a quarter of a metre tells: what they hide is not shaded.
+std::vector<std::array<std::uint32_t, 3>> from_near(const Skin& skin, const Camera& camera) {
+  constexpr size_t steps = 4096;
+  const Eigen::Vector3f forward = (camera.target - camera.eye).normalized().cast<float>(),
+                        eye = camera.eye.cast<float>();
+  std::vector<std::uint16_t> step(skin.face.size());
+  std::vector<std::uint32_t> begin(steps + 1, 0);
+  for (size_t f = 0; f < skin.face.size(); ++f) {
+    const float depth_m = forward.dot(skin.p[skin.face[f][0]] - eye);
+    step[f] = static_cast<std::uint16_t>(std::clamp(4 * depth_m, 0.0f, steps - 1.0f));
+    ++begin[step[f] + 1];
+  }
+  for (size_t s = 1; s < begin.size(); ++s) begin[s] += begin[s - 1];
+  std::vector<std::array<std::uint32_t, 3>> sorted(skin.face.size());
+  for (size_t f = 0; f < skin.face.size(); ++f) sorted[begin[step[f]]++] = skin.face[f];
+  return sorted;
+}
+
+void draw(const Stage& stage, const Skin& skin, const Camera& camera) {
   if (skin.face.empty()) return;
   Arrays arrays;
   arrays.vectors(0, skin.p);
   arrays.vectors(1, skin.normal);
   arrays.colours(2, skin.colour);
-  arrays.fill(GL_ELEMENT_ARRAY_BUFFER, skin.face);
-  glUniform1i(stage.uniform("dots"), 0);
+  arrays.fill(GL_ELEMENT_ARRAY_BUFFER, from_near(skin, camera));
   glUniform1f(stage.uniform("rock"), skin.rock);
+  glUniform1f(stage.uniform("gloss"), skin.gloss);
   if (skin.sides == Skin::Sides::inner) {
     glEnable(GL_CULL_FACE);
     glCullFace(GL_FRONT);
@@ -279,14 +308,37 @@ void draw(const Stage& stage, const Dots& dots, const Camera& camera, int height
   const double half = camera.fov_rad > 0 ? std::tan(camera.fov_rad / 2) : camera.height_m / 2;
   glUniform1f(stage.uniform("dot_px"), static_cast<float>(dots.size_m * height / 2.0 / half));
   glUniform1f(stage.uniform("least_px"), 2 * dots.least_px);
-  glUniform1i(stage.uniform("dots"), 1);
   glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(dots.p.size()));
 }
 
-// Distance along the view axis from what the depth buffer holds; +inf = background.
-std::vector<float> depths_m(const Camera& camera, int width, int height) {
-  std::vector<float> depth(static_cast<size_t>(width) * height);
-  glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
+// Colours and what the depth buffer holds, row 0 at the bottom.
+struct Shot {
+  std::vector<Colour> pixel;
+  std::vector<float> depth;
+};
+
+// All that Mesa does: one picture at a time, what follows is done beside the next one.
+Shot shoot(const Scene& scene, const Camera& camera, int width, int height) {
+  Stage& stage = Stage::the();
+  const std::lock_guard lock(stage.mutex);
+  stage.open(width, height, scene.background);
+  const double aspect = static_cast<double>(width) / height;
+  stage.use(false);
+  set_look(stage, scene, camera, aspect);
+  for (const Skin& skin : scene.skins) draw(stage, skin, camera);
+  stage.use(true);
+  set_look(stage, scene, camera, aspect);
+  for (const Dots& dots : scene.dots) draw(stage, dots, camera, height);
+  glFinish();
+  Shot shot;
+  shot.depth.resize(static_cast<size_t>(width) * height);
+  glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, shot.depth.data());
+  shot.pixel = std::move(stage.buffer);
+  return shot;
+}
+
+// Turns what the depth buffer holds into metres along the view axis; +inf = background.
+void to_metres(std::vector<float>& depth, const Camera& camera) {
   const double n = camera.near_m, f = camera.far_m;
   parallel_chunks(depth.size(), 1 << 16, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
@@ -295,7 +347,6 @@ std::vector<float> depths_m(const Camera& camera, int width, int height) {
       depth[k] = d >= 1 ? INFINITY : static_cast<float>(m);
     }
   });
-  return depth;
 }
 
 // Darkens what lies deeper than the mean of the pixels on both sides of it: crevices, feet of walls, the ground behind
@@ -306,21 +357,22 @@ void darken_crevices(std::vector<Colour>& pixel, const std::vector<float>& depth
   constexpr std::array<std::array<double, 2>, 4> ways = {{{1, 0}, {0.71, 0.71}, {0, 1}, {-0.71, 0.71}}};
   struct Probe {
     int i, j;
-    double radius_px;
+    float radius_px;
   };
   std::vector<Probe> probes;
   for (const double radius_px : {3.0, 8.0, 20.0})
     for (const auto& way : ways)
       probes.push_back({static_cast<int>(std::lround(radius_px * way[0])),
-                        static_cast<int>(std::lround(radius_px * way[1])), radius_px});
+                        static_cast<int>(std::lround(radius_px * way[1])), static_cast<float>(radius_px)});
   const bool perspective = camera.fov_rad > 0;
-  const double px = (perspective ? 2 * std::tan(camera.fov_rad / 2) : camera.height_m) / height;
-  std::vector<double> flat(depth.size());  // linear in the picture over a plane
+  const auto px = static_cast<float>((perspective ? 2 * std::tan(camera.fov_rad / 2) : camera.height_m) / height);
+  const auto far_m = static_cast<float>(camera.far_m);
+  std::vector<float> flat(depth.size());  // linear in the picture over a plane
   parallel_for(
       depth.size(),
       [&](size_t k) {
-        const double d = depth[k];
-        flat[k] = perspective ? 1 / d : -std::min(d, camera.far_m);
+        const float d = depth[k];
+        flat[k] = perspective ? 1 / d : -std::min(d, far_m);
       },
       1 << 16);
   parallel_for(
@@ -328,19 +380,17 @@ void darken_crevices(std::vector<Colour>& pixel, const std::vector<float>& depth
       [&](size_t row) {
         const int y = static_cast<int>(row);
         const float* deep = depth.data() + row * width;
-        const double* here = flat.data() + row * width;
-        std::vector<double> shade(width, 0.0), per_m(width), scale(width);
-        for (int x = 0; x < width; ++x) {
-          const double d = deep[x];
-          scale[x] = perspective ? d * d : 1;
-          per_m[x] = perspective ? d * px : px;
-        }
+        const float* here = flat.data() + row * width;
+        // In float, the sum of twelve probes too: eight bits of colour ask for no more, and four fit into one vector.
+        std::vector<float> shade(width, 0.0f), scale(width);  // scale: what a step of `flat` is in pixels' metres
+        for (int x = 0; x < width; ++x) scale[x] = perspective ? deep[x] / px : 1 / px;
         for (const Probe& p : probes) {
-          const double* one = flat.data() + static_cast<size_t>(std::clamp(y + p.j, 0, height - 1)) * width;
-          const double* other = flat.data() + static_cast<size_t>(std::clamp(y - p.j, 0, height - 1)) * width;
+          const float* one = flat.data() + static_cast<size_t>(std::clamp(y + p.j, 0, height - 1)) * width;
+          const float* other = flat.data() + static_cast<size_t>(std::clamp(y - p.j, 0, height - 1)) * width;
+          const float per_radius = 1 / p.radius_px;
           const auto probe = [&](int x, int right, int left) {
-            const double deeper_m = ((one[right] + other[left]) / 2 - here[x]) * scale[x];
-            shade[x] += std::min(std::max(deeper_m / (p.radius_px * per_m[x]) - 0.05, 0.0), 1.5) / 12;
+            const float deeper_px = ((one[right] + other[left]) * 0.5f - here[x]) * scale[x];
+            shade[x] += std::min(std::max(deeper_px * per_radius - 0.05f, 0.0f), 1.5f);
           };
           const auto near_edge = [&](int x) {
             probe(x, std::clamp(x + p.i, 0, width - 1), std::clamp(x - p.i, 0, width - 1));
@@ -352,10 +402,10 @@ void darken_crevices(std::vector<Colour>& pixel, const std::vector<float>& depth
         }
         for (int x = 0; x < width; ++x) {
           if (!std::isfinite(deep[x])) continue;
-          const double keep = 0.40 + 0.60 * std::exp(-1.6 * shade[x]);
+          const float keep = 0.40f + 0.60f * std::exp(-1.6f / 12 * shade[x]);
           Colour& c = pixel[row * width + x];
-          c = {static_cast<std::uint8_t>(c.r * keep), static_cast<std::uint8_t>(c.g * keep),
-               static_cast<std::uint8_t>(c.b * keep), 255};
+          const auto dark = [keep](std::uint8_t v) { return static_cast<std::uint8_t>(static_cast<float>(v) * keep); };
+          c = {dark(c.r), dark(c.g), dark(c.b), 255};
         }
       },
       16);
@@ -364,22 +414,14 @@ void darken_crevices(std::vector<Colour>& pixel, const std::vector<float>& depth
 }  // namespace
 
 Picture take_picture(const Scene& scene, const Camera& camera, int width, int height) {
-  Stage& stage = Stage::the();
-  const std::lock_guard lock(stage.mutex);
   const int w = 2 * width, h = 2 * height;
-  stage.open(w, h, scene.background);
-  set_camera(stage, camera, static_cast<double>(width) / height);
-  glUniform1i(stage.uniform("headlamp"), scene.light == Light::headlamp);
-  glUniform1f(stage.uniform("lamp"), static_cast<float>(scene.lamp_m));
-  for (const Skin& skin : scene.skins) draw(stage, skin);
-  for (const Dots& dots : scene.dots) draw(stage, dots, camera, h);
-  glFinish();
-  const std::vector<float> depth = depths_m(camera, w, h);
-  darken_crevices(stage.buffer, depth, camera, w, h);
+  Shot shot = shoot(scene, camera, w, h);
+  to_metres(shot.depth, camera);
+  darken_crevices(shot.pixel, shot.depth, camera, w, h);
   Picture large(w, h, {});
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
-      Colour c = stage.buffer[static_cast<size_t>(h - 1 - y) * w + x];
+      Colour c = shot.pixel[static_cast<size_t>(h - 1 - y) * w + x];
       c.a = 255;
       large.at(x, y) = c;
     }

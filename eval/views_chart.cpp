@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Charts.
+#include "eval/chart_axes.h"
 #include "eval/exhibit.h"
 #include "eval/outline.h"
 
@@ -7,43 +8,6 @@
 #include <cmath>
 
 namespace adit {
-
-namespace {
-
-// Axes of a chart: x and y values laid on a rectangle, y up, with ticks, grid lines and words.
-struct Axes {
-  Vec2 low, high;           // values of the corners
-  Vec2 corner_px, size_px;  // upper left
-
-  Vec2 operator()(double x, double y) const {
-    return corner_px + Vec2((x - low.x()) / (high.x() - low.x()) * size_px.x(),
-                            (high.y() - y) / (high.y() - low.y()) * size_px.y());
-  }
-};
-
-void add_axes(Drawing& drawing, const Axes& axes, const std::string& x_words, const std::string& y_words) {
-  const Type type{.size_px = 16, .colour = ink::faint, .anchor = Anchor::middle};
-  const Vec2 a = axes.corner_px, b = a + axes.size_px;
-  drawing.add(Area{{{a, {b.x(), a.y()}, b, {a.x(), b.y()}}}, ink::open});
-  const double dx = round_down_125((axes.high.x() - axes.low.x()) / 5),
-               dy = round_down_125((axes.high.y() - axes.low.y()) / 3);
-  for (double x = dx * std::ceil(axes.low.x() / dx); x <= axes.high.x() + 1e-9; x += dx) {
-    const Vec2 p = axes(x, axes.low.y());
-    drawing.add(Line{{p, p + Vec2(0, 6)}, ink::faint, 1.5});
-    drawing.add(Words{p + Vec2(0, 24), plain_number(x, 4), type});
-  }
-  Type right = type;
-  right.anchor = Anchor::end;
-  for (double y = dy * std::ceil(axes.low.y() / dy - 1e-9); y <= axes.high.y() + 1e-9; y += dy) {
-    const Vec2 p = axes(axes.low.x(), y);
-    drawing.add(Line{{p, p + Vec2(axes.size_px.x(), 0)}, ink::rock, 1});
-    drawing.add(Words{p + Vec2(-9, 6), plain_number(y, 3), right});
-  }
-  drawing.add(Words{{b.x(), b.y() + 46}, x_words, right});
-  drawing.add(Words{a + Vec2(0, -12), y_words, {.size_px = 16, .colour = ink::faint}});
-}
-
-}  // namespace
 
 Figure error_chart(const Exhibit& x) {
   Figure figure{.name = "errors", .title = "Error of the path along the way"};

@@ -2,6 +2,7 @@
 // Pictures from within: what a lamp shows from the path, the mine beside the map.
 #include "base/parallel.h"
 #include "eval/animation.h"
+#include "eval/mine_views.h"
 #include "eval/views.h"
 
 #include <algorithm>
@@ -13,8 +14,7 @@ namespace {
 
 constexpr double eye_m = 1.35;  // above the path
 
-struct Lookout {
-  Vec3 eye, ahead;
+struct PathLookout : Lookout {
   double along_m;
 };
 
@@ -23,12 +23,12 @@ const Trajectory& path_to_look_from(const Exhibit& x) {
 }
 
 // A place on the path from which the way ahead is long: near a share of the way driven, within `reach` of it.
-std::optional<Lookout> lookout(const Exhibit& x, double share, double reach) {
+std::optional<PathLookout> lookout(const Exhibit& x, double share, double reach) {
   const Trajectory& path = path_to_look_from(x);
   if (path.size() < 2) return {};
   const std::vector<double> along = distance_along(path);
   const double total = along.back(), wanted = total * share;
-  std::optional<Lookout> best;
+  std::optional<PathLookout> best;
   double best_view = -1;
   for (double d = -reach * total; d <= reach * total; d += std::max(0.5, 0.004 * total)) {
     const double at = std::clamp(wanted + d, 0.0, total);
@@ -42,15 +42,9 @@ std::optional<Lookout> lookout(const Exhibit& x, double share, double reach) {
       way = path.X_WB[j].translation() - path.X_WB[i].translation();
     way.normalize();
     const double view = x.caster ? std::min(25.0, x.caster->nearest(Ray{eye, way, 100}).range_m) : 1;
-    if (view > best_view + 1e-9) best_view = view, best = Lookout{eye, way, along[i]};
+    if (view > best_view + 1e-9) best_view = view, best = PathLookout{{eye, way}, along[i]};
   }
   return best;
-}
-
-Picture see(Scene scene, const Camera& camera, int width, int height) {
-  scene.light = Light::headlamp;
-  scene.background = rgb(0x0d0d0e);
-  return take_picture(scene, camera, width, height);
 }
 
 void add_plate(Drawing& drawing, double left, const std::string& words, double type_px) {
@@ -75,32 +69,21 @@ void add_staff(Skin& skin, const Exhibit& x, const Lookout& from) {
   }
 }
 
-Camera camera_of(const Lookout& from) {
-  Camera camera;
-  camera.eye = from.eye;
-  camera.target = from.eye + from.ahead - Vec3(0, 0, 0.06);
-  camera.fov_rad = 1.15;
-  camera.near_m = 0.08;
-  camera.far_m = 150;
-  return camera;
-}
-
 // The mine and the map from one place.
 struct Pair {
   Picture mine, map;
 };
-Pair look(const Exhibit& x, const Lookout& from, const Camera& camera, int width, int height) {
-  // Beyond it the lamp shows nothing.
-  const auto near = [&](const Vec3& p) { return (p - from.eye).squaredNorm() < 80 * 80; };
+Pair look(const Exhibit& x, const Lookout& from, const Camera& camera, int width, int height, double lamp_m = 8) {
+  const auto near = lit_from(camera, static_cast<double>(width) / height);
   Scene truth, map;
+  truth.lamp_m = map.lamp_m = lamp_m;
   Skin staff;
   add_staff(staff, x, from);
   if (x.has_world()) {
     const Mesh& mesh = x.input.world.mesh;
-    truth.skins.push_back(skin_of(
+    truth.skins = mine_skins(
         mesh, [](std::uint32_t, Label label) { return rock_colour(label); },
-        [&](size_t f) { return near(mesh.corner(f, 0)); }));
-    truth.skins.back().rock = 1;
+        [&](size_t f) { return near(mesh.corner(f, 0)); });
     truth.skins.push_back(staff);
   }
   if (x.has_surface())
@@ -108,7 +91,8 @@ Pair look(const Exhibit& x, const Lookout& from, const Camera& camera, int width
   else
     map.dots.push_back(error_dots(x, true, 1, 0, near));
   map.skins.push_back(staff);
-  return {see(std::move(truth), camera, width, height), see(std::move(map), camera, width, height)};
+  return {take_lamp_picture(std::move(truth), camera, width, height),
+          take_lamp_picture(std::move(map), camera, width, height)};
 }
 
 Drawing beside(const Pair& pair, const std::string& map_words, double type_px = 20) {
@@ -140,7 +124,7 @@ std::optional<Lookout> lookout_to(const Exhibit& x, const Vec3& place) {
     if (cost >= least || far < 0.5) continue;
     const bool seen = !x.caster || x.caster->nearest(Ray{eye, to / far, far + 1}).range_m > far - 0.4;
     if (!seen) cost += 100;
-    if (cost < least) least = cost, best = Lookout{eye, to / far, 0};
+    if (cost < least) least = cost, best = Lookout{eye, to / far};
   }
   return best;
 }
@@ -151,7 +135,7 @@ Figure interior_view(const Exhibit& x, int k) {
   const std::string number = std::to_string(k + 1);
   Figure figure{.name = "interior-" + number, .title = "From the path, " + number};
   auto from = lookout(x, (k + 0.5) / std::max(1, x.settings.interiors), 0.06);
-  if (x.viewpoint) from = Lookout{x.viewpoint->eye, (x.viewpoint->target - x.viewpoint->eye).normalized(), 0};
+  if (x.viewpoint) from = PathLookout{{x.viewpoint->eye, (x.viewpoint->target - x.viewpoint->eye).normalized()}, 0};
   if (!from || (!x.has_surface() && !x.has_points())) {
     figure.missing = !from ? "there is no path to look from" : "the map has neither a surface nor points";
     return figure;
@@ -159,7 +143,7 @@ Figure interior_view(const Exhibit& x, int k) {
   const int width = x.settings.width_px / 2 - 4, height = width * 5 / 8;
   const Camera camera = x.viewpoint ? camera_at(*x.viewpoint) : camera_of(*from);
   Drawing drawing = beside(look(x, *from, camera, width, height), map_words(x));
-  const double bar = 250, corner = drawing.width_px - bar - 40, top = drawing.height_px - 64;
+  const double bar = 240, corner = drawing.width_px - bar - 54, top = drawing.height_px - 64;
   drawing.add(Area{
       {{{corner, top}, {drawing.width_px, top}, {drawing.width_px, drawing.height_px}, {corner, drawing.height_px}}},
       {243, 243, 240, 225}});
@@ -172,11 +156,43 @@ Figure interior_view(const Exhibit& x, int k) {
   return figure;
 }
 
+namespace {
+
+Figure lamp_figure(const Exhibit& x, Figure figure, const std::optional<Lookout>& from, const std::string& lack) {
+  if (!from && !x.viewpoint) {
+    figure.missing = lack;
+    return figure;
+  }
+  const Camera camera = x.viewpoint ? camera_at(*x.viewpoint) : camera_of(*from);
+  const int width = x.settings.width_px, height = 2 * (width * 9 / 32);
+  figure.drawing.width_px = width;
+  figure.drawing.height_px = height;
+  figure.drawing.add(Layer{look_into(x.input.world, camera, width, height),
+                           {0, 0},
+                           {static_cast<double>(width), static_cast<double>(height)}});
+  add_plate(figure.drawing, 0, figure.title, 20);
+  figure.alt = "What a lamp shows of the true mine: " + figure.title;
+  return figure;
+}
+
+}  // namespace
+
+Figure mine_view(const Exhibit& x) {
+  return lamp_figure(x, {.name = "mine", .title = "the mine"}, longest_sight(x.input.world),
+                     "there is no mine with passages to look along; give a viewpoint");
+}
+
+Figure thing_view(const Exhibit& x, Label label) {
+  const std::string name = label_name(label);
+  return lamp_figure(x, {.name = "thing-" + name, .title = name}, lookout_to(x.input.world, label),
+                     "the mine has no " + name + " that can be seen from a passage");
+}
+
 std::vector<AlongFrame> along_frames(const Exhibit& x, const Progress& progress) {
   constexpr int width = 336, height = 210;
   std::vector<AlongFrame> frames;
   if (!x.has_surface() && !x.has_points()) return frames;
-  std::vector<Lookout> lookouts;
+  std::vector<PathLookout> lookouts;
   for (int k = 0; k < x.settings.frames; ++k) {
     const auto from = lookout(x, (k + 0.5) / x.settings.frames, 0);
     if (!from) break;
@@ -185,7 +201,7 @@ std::vector<AlongFrame> along_frames(const Exhibit& x, const Progress& progress)
   frames.resize(lookouts.size());
   progress("report: along the path", 0, x.settings.frames);
   parallel_for(frames.size(), [&](size_t k) {
-    const Lookout& from = lookouts[k];
+    const PathLookout& from = lookouts[k];
     Drawing drawing = beside(look(x, from, camera_of(from), width, height), "the map", 12);
     drawing.add(Words{{drawing.width_px - 10, height - 10.0},
                       plain_number(from.along_m, 4) + " m",
@@ -208,7 +224,8 @@ Picture spot_interior(const Exhibit& x, const Vec3& place_W, int width) {
   Camera camera = camera_of(*from);
   camera.target = from->eye + from->ahead;
   const int half = width / 2 - 4, height = 2 * (half / 4);
-  Drawing drawing = beside(look(x, *from, camera, half, height), map_words(x));
+  const double far_m = (place_W - from->eye).norm();  // a place at the end of the light would be dark
+  Drawing drawing = beside(look(x, *from, camera, half, height, std::max(8.0, 1.3 * far_m)), map_words(x));
   const auto at = project(camera, half, height, place_W);
   for (const double left : {0.0, half + 8.0})
     if (at)

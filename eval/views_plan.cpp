@@ -117,7 +117,7 @@ namespace {
 void draw_errors(Figure& figure, const Exhibit& x, double width_px, bool small) {
   const double type = small ? 15 : 17;
   auto [drawing, frame] = plan_sheet(x.low_W, x.high_W, width_px,
-                                     small ? std::array{46.0, 132.0, 6.0, 34.0} : std::array{64.0, 84.0, 14.0, 40.0});
+                                     small ? std::array{46.0, 132.0, 20.0, 34.0} : std::array{64.0, 84.0, 22.0, 40.0});
   add_ground(drawing, frame, x.outline);
   if (x.has_points()) {
     // Cells of at least 0.2 m: finer ones would stand empty between scans.

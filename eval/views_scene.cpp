@@ -252,6 +252,8 @@ Figure coverage_view(const Exhibit& x) {
   }
   add_colour_bar(drawing, ramp, {36, 10}, 320, 18);
   add_key(drawing, {400, 34}, unseen, "met by no beam", 18);
+  add_compass(drawing, framing.camera, {drawing.width_px - 60, framing.height_px - 16.0}, 34);
+  add_scale_bar(drawing, {24, framing.height_px - 12}, framing.px_per_m, 260, 18);
   figure.drawing = std::move(drawing);
   figure.caption =
       "The true rock by how many beams, free of noise, met it at a usable angle (each step of the bar doubles them): " +

@@ -35,6 +35,57 @@ Looks look_along(const Caster& caster, const Passage& p) {
   return looks;
 }
 
+// Mean square of how far points (along, off) lie from the straight line that fits them best.
+double off_line2(const std::vector<Vec2>& points) {
+  Vec2 middle = Vec2::Zero();
+  for (const Vec2& p : points) middle += p / static_cast<double>(points.size());
+  double aa = 0, ao = 0, oo = 0;
+  for (const Vec2& p : points) {
+    const Vec2 d = p - middle;
+    aa += d.x() * d.x(), ao += d.x() * d.y(), oo += d.y() * d.y();
+  }
+  return std::max(0.0, oo - ao * ao / aa) / static_cast<double>(points.size());
+}
+
+// Where the passage's line is `along_m` from its beginning, and its way there.
+std::pair<Vec3, Vec2> place_on(const std::vector<Vec3>& line, double along_m) {
+  for (size_t i = 1; i < line.size(); ++i) {
+    const Vec3 step = line[i] - line[i - 1];
+    const double length = step.head<2>().norm();
+    if (along_m <= length || i + 1 == line.size())
+      return {line[i - 1] + std::min(1.0, along_m / length) * step, step.head<2>().normalized()};
+    along_m -= length;
+  }
+  return {line.front(), Vec2::UnitX()};
+}
+
+// Roughness of one side of a passage: what rays square to its line meet, stretch by stretch. NaN where no stretch is plain.
+double roughness_m(const Caster& caster, const Passage& p, Label side) {
+  constexpr double stretch_m = 4, step_m = 0.1;
+  const double clear_m = 0.5 * p.width_m + 2.5;
+  double sum = 0;
+  int n = 0;
+  for (double from = clear_m; from + stretch_m <= p.length_m - clear_m; from += stretch_m) {
+    const Vec2 along = place_on(p.centre_line, from + 0.5 * stretch_m).second, left(-along.y(), along.x());
+    for (const double sign : {1.0, -1.0}) {
+      if (side != Label::rib && sign != (side == Label::roof ? 1.0 : -1.0)) continue;
+      const Vec3 way = side == Label::rib ? Vec3(sign * left.x(), sign * left.y(), 0) : Vec3(0, 0, sign);
+      std::vector<Vec2> profile;
+      for (double s = 0; s < stretch_m - 1e-9; s += step_m) {
+        const Vec3 eye = place_on(p.centre_line, from + s).first + Vec3(0, 0, 0.5 * p.height_m);
+        const Hit hit = caster.nearest({eye, way, 50});
+        if (hit.face < 0 || caster.mesh().label[static_cast<size_t>(hit.face)] != side) break;
+        const Vec3 met = eye + hit.range_m * way;
+        profile.emplace_back(along.dot(met.head<2>()), way.dot(met));
+      }
+      if (static_cast<double>(profile.size()) * step_m < stretch_m - 0.5 * step_m) continue;
+      sum += off_line2(profile);
+      ++n;
+    }
+  }
+  return n ? std::sqrt(sum / n) : std::nan("");
+}
+
 }  // namespace
 
 void measure(const World& world, MineSamples& samples) {
@@ -47,6 +98,10 @@ void measure(const World& world, MineSamples& samples) {
     if (looks.n == 0) continue;
     samples.width_m.push_back(looks.width / looks.n);
     samples.height_m.push_back(looks.height / looks.n);
+    for (const auto& [side, list] :
+         {std::pair(Label::floor, &samples.floor_rough_m), std::pair(Label::roof, &samples.roof_rough_m),
+          std::pair(Label::rib, &samples.rib_rough_m)})
+      if (const double rough = roughness_m(caster, p, side); std::isfinite(rough)) list->push_back(rough);
   }
   for (const Junction& j : world.junctions) ++samples.junctions[j.degree()];
   for (const Pillar& p : world.pillars) samples.pillar_m2.push_back(p.area_m2);
@@ -70,7 +125,8 @@ void append(MineSamples& all, const MineSamples& more) {
   };
   for (auto list :
        {&MineSamples::width_m, &MineSamples::height_m, &MineSamples::grade_percent, &MineSamples::length_m,
-        &MineSamples::pillar_m2, &MineSamples::extraction, &MineSamples::blocked_share, &MineSamples::bodies_share})
+        &MineSamples::floor_rough_m, &MineSamples::roof_rough_m, &MineSamples::rib_rough_m, &MineSamples::pillar_m2,
+        &MineSamples::extraction, &MineSamples::blocked_share, &MineSamples::bodies_share})
     join(all.*list, more.*list);
   for (const auto& [degree, n] : more.junctions) all.junctions[degree] += n;
   for (const auto& [label, values] : more.per_100m) join(all.per_100m[label], values);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/damaged_estimate.h"
 #include "base/error.h"
 #include "base/estimate.h"
 #include "base/files.h"
@@ -145,6 +146,46 @@ TEST(EstimateFolder, AForeignMapJsonAndPathsOfOtherLengthAreErrors) {
   write_text(dir + "/map.json", "{");
   EXPECT_THROW(load_estimate(dir), Error);
   EXPECT_THROW(load_estimate(dir + "/nowhere"), Error);
+}
+
+TEST(DamagedEstimate, EachFileThatCannotBeReadIsNamedAndTheOthersAreThere) {
+  const std::string dir = fresh_folder("damaged");
+  const Estimate e = small_estimate();
+  save_estimate(dir, e);
+  write_text(dir + "/points.ply", "ply\nnonsense");
+  write_text(dir + "/open_loop.tum", "0 1 2\n");
+  EXPECT_THROW(load_estimate(dir), Error);
+  std::vector<std::string> damaged;
+  const Estimate left = load_what_is_whole(dir, damaged);
+  ASSERT_EQ(damaged.size(), 2u);
+  EXPECT_NE(damaged[0].find("open_loop.tum"), std::string::npos);
+  EXPECT_NE(damaged[1].find("points.ply"), std::string::npos);
+  EXPECT_EQ(left.path.size(), e.path.size());
+  EXPECT_EQ(left.planar.size(), e.planar.size());
+  EXPECT_EQ(left.closures.size(), e.closures.size());
+  EXPECT_EQ(left.grid.width, e.grid.width);
+  EXPECT_TRUE(left.open_loop.empty());
+  EXPECT_EQ(left.points.size(), 0u);
+}
+
+TEST(DamagedEstimate, WithoutItsPathAMapKeepsWhatDoesNotHangOnIt) {
+  const std::string dir = fresh_folder("pathless");
+  save_estimate(dir, small_estimate());
+  fs::remove(dir + "/trajectory.tum");
+  std::vector<std::string> damaged;
+  const Estimate left = load_what_is_whole(dir, damaged);
+  EXPECT_EQ(damaged.size(), 3u);  // the path, and the two that have a pose for each of its poses
+  EXPECT_TRUE(left.planar.empty());
+  EXPECT_EQ(left.points.size(), 1u);
+  EXPECT_EQ(left.volume_m3, 12.5);
+}
+
+TEST(DamagedEstimate, OfAWholeMapNothingIsSaid) {
+  const std::string dir = fresh_folder("whole");
+  save_estimate(dir, small_estimate());
+  std::vector<std::string> damaged;
+  EXPECT_EQ(load_what_is_whole(dir, damaged).path.size(), 3u);
+  EXPECT_TRUE(damaged.empty());
 }
 
 }  // namespace

@@ -175,6 +175,7 @@ TEST_F(TinyRun, AFolderWithPartsMissingGivesAPageThatSaysWhich) {
   const Answer said = adit_says("report --json " + dir + " --set report.frames=0");
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_THAT(nlohmann::json::parse(said.out)["missing"][0], HasSubstr("points.ply"));
+  EXPECT_THAT(read_text(dir + "/report/index.html"), HasSubstr("the map lies"));  // by its score.json
   fs::remove_all(dir);
 }
 
@@ -312,6 +313,20 @@ TEST_F(TinyRun, ATruncatedRecordingIsRefusedAndLeavesNothing) {
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_THAT(said.err, HasSubstr("log.h5"));
   EXPECT_FALSE(fs::exists(dir + "/m"));
+  fs::remove_all(dir);
+}
+
+TEST_F(TinyRun, WhatMinesMeasureIsATableAndPlots) {
+  const std::string dir = fresh_folder("stats");
+  const Answer said = adit_says("world --json --stats " + out_ + " -o " + dir);
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const nlohmann::json json = nlohmann::json::parse(said.out);
+  EXPECT_EQ(json["mines"], 1);
+  for (const std::string key : {"floor_rough_m", "roof_rough_m", "rib_rough_m", "junction_degree"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  const std::string svg = read_text(dir + "/stats.svg");
+  EXPECT_THAT(svg, HasSubstr("height_m"));
+  EXPECT_TRUE(fs::exists(dir + "/stats.png"));
   fs::remove_all(dir);
 }
 

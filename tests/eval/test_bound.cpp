@@ -65,6 +65,25 @@ TEST(Bound, FiveBeamsInARoomTellWhatArithmeticSays) {
   EXPECT_TRUE(I.isApprox(Vec3(5, 2, 16).asDiagonal().toDenseMatrix(), 1e-6)) << I;  // float ranges
 }
 
+TEST(Bound, APositionIsToldAsWellAsArithmeticSays) {
+  ScanInformation scan;
+  scan.I = Vec3(5, 2, 16).asDiagonal();
+  EXPECT_NEAR(position_bound(scan).least_m, 1 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(position_bound(scan).most_m, 1 / std::sqrt(5.0), 1e-12);
+  // A heading that has to be found too takes 4 * 4 / 16 from the 5 of x, and leaves y's 2 alone.
+  scan.I(0, 2) = scan.I(2, 0) = 4;
+  EXPECT_NEAR(position_bound(scan).least_m, 1 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(position_bound(scan).most_m, 1 / std::sqrt(4.0), 1e-12);
+}
+
+TEST(Bound, ATunnelWithoutEndLeavesTheWayAlongItOpen) {
+  ScanInformation scan;
+  scan.I = Vec3(0, 3e4, 16).asDiagonal();
+  scan.I(0, 0) = 1e-13;  // rounding
+  EXPECT_TRUE(std::isinf(position_bound(scan).least_m));
+  EXPECT_NEAR(position_bound(scan).most_m, 1 / std::sqrt(3e4), 1e-12);
+}
+
 TEST(Bound, TheInformationIsThatOfTheRangesOwnDerivatives) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const auto u = [&](int k) { return 2 * uniform(seed, Draw::test, static_cast<std::uint64_t>(k)) - 1; };

@@ -67,6 +67,23 @@ TEST(ComparePage, ShowsTheSmallestSeedThatAllGroupsHave) {
   EXPECT_EQ(all.runs[shown[0]].settings, "method = \"<a>\"\n");
 }
 
+TEST(ComparePage, PathsAreLaidOverEachOtherWithTheirLetters) {
+  SideBySide all = two_methods();
+  EXPECT_NE(comparison_html(all, std::vector<std::string>(all.runs.size())).find("no run's path"), std::string::npos);
+  Score score;
+  for (int k = 0; k < 50; ++k)
+    score.poses.push_back(
+        {0.1 * k, 1.0 * k, Pose::Identity(), Vec3(0.03 * k, 0.04 * k, -0.1), {0, 0, 0}, Pose::Identity()});
+  const PathErrors errors = path_errors(score, 2);
+  ASSERT_EQ(errors.along_m.size(), 50u);
+  EXPECT_NEAR(errors.plan_m.back(), 0.05 * 49, 1e-12);
+  EXPECT_DOUBLE_EQ(errors.height_m.back(), -0.1);
+  all.paths = {errors, {}};  // the second group has none
+  const std::string html = comparison_html(all, std::vector<std::string>(all.runs.size()));
+  EXPECT_NE(html.find("over each other: A (seed 2)."), std::string::npos);
+  EXPECT_EQ(count(html, "Chart of the paths&#39; errors"), 4u);  // two charts, label and title each
+}
+
 TEST(ComparePage, OneRangeHoldsTheErrorsOfAll) {
   std::vector<ScoredRun> runs = two_methods().runs;
   EXPECT_DOUBLE_EQ(common_range_m(runs), 0.5);  // 0.3 m and a third of that, rounded up

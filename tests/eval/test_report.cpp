@@ -243,6 +243,19 @@ TEST_F(Report, AViewpointIsTakenByPicturesInSpaceAndRefusedByOthers) {
   EXPECT_THROW(from(Vec3(0, -20, 1), "cutaway"), Error);  // the eye where it looks at
 }
 
+TEST_F(Report, AMineAloneCanBeLookedInto) {
+  const SyntheticRun& whole = run();
+  const Log log;
+  const Truth truth;
+  const Estimate estimate;
+  const Score score;
+  const ReportInput mine{whole.world, log, truth, estimate, score, "", "mine"};
+  const Viewpoint here{Vec3(0, -20, 1.2), Vec3(6, -20, 1), 1};
+  const Picture picture = render_view("mine", mine, small_settings(), here);
+  EXPECT_EQ(picture.width, 600);
+  EXPECT_THROW(render_view("thing-crib", mine, small_settings()), Error);  // there is none
+}
+
 TEST_F(Report, WhatTheFolderLacksIsSaidOnTheFirstScreen) {
   ReportInput in = run().input();
   in.missing = {"the <recording>: there is none"};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What mines measure, against the distributions that their settings state.
+#include "tests/support/shapes.h"
 #include "worlds/stats.h"
 #include "worlds/terrain.h"
 #include "worlds/worlds.h"
@@ -204,6 +205,24 @@ TEST(Statistics, SpreadIsThatOfASmallSample) {
   EXPECT_DOUBLE_EQ(s.sd, std::sqrt(2.5));
   EXPECT_EQ(s.p50, 3);
   EXPECT_EQ(s.p95, 5);
+}
+
+TEST(Statistics, ARipplesRoughnessIsItsHeightOverRootTwo) {
+  // Ripples of 1 m in height, of another size on each side; stretches of 4 m hold whole ones.
+  World tunnel = tunnel_world(20, 4, 2, 0.1);
+  for (Vec3& p : tunnel.mesh.vertex) {
+    const double wave = std::sin(2 * pi * p.x());
+    if (p.z() < 1e-6) p.z() += 0.03 * wave;
+    if (p.z() > 2 - 1e-6) p.z() += 0.05 * wave;
+    if (p.x() > 1e-6 && p.x() < 20 - 1e-6) p.y() += std::abs(p.y()) > 2 - 1e-6 ? 0.08 * wave : 0;
+  }
+  MineSamples samples;
+  measure(tunnel, samples);
+  ASSERT_EQ(samples.floor_rough_m.size(), 1u);
+  // Straight faces of 0.1 m cut a ripple of 1 m by up to 1 - cos(0.1 pi) = 5 % between its vertices.
+  EXPECT_NEAR(samples.floor_rough_m[0], 0.03 / std::sqrt(2), 0.05 * 0.03);
+  EXPECT_NEAR(samples.roof_rough_m[0], 0.05 / std::sqrt(2), 0.05 * 0.05);
+  EXPECT_NEAR(samples.rib_rough_m[0], 0.08 / std::sqrt(2), 0.05 * 0.08);
 }
 
 }  // namespace

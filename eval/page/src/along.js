@@ -28,6 +28,17 @@ function bandsOf(data) {
   return data.degenerate.map((d) => [along[nearest(t, d.from_s)], along[nearest(t, d.to_s)]]);
 }
 
+// What the scans could tell at best, in millimetres.
+function information(data, shared) {
+  const { information: told } = data;
+  if (!told) return html('p', { class: 'missing' }, 'Not shown: information along the path. It is worked out from the true mine and the truth of the recording.');
+  const mm = (list) => list.map((v) => (v == null ? null : 1000 * v));
+  return lines({ ...shared, x: told.along, title: 'Information: what one scan can tell at best', yWords: 'mm, 1 σ', logY: true, height: 190,
+                 series: [{ name: 'direction told least', y: mm(told.least), ink: 'two' }, { name: 'direction told most', y: mm(told.most), ink: 'one' }],
+                 alt: 'Chart of the deviation with which one scan could at best tell the position, along the directions told least and most, along the way driven',
+                 caption: 'Least deviation with which one scan of the mapping laser could place it in a mine that is known (Cramér–Rao bound); low is much information, a gap is none. Where the upper line is high, the mapper has to carry its position over from elsewhere.' });
+}
+
 export function along(data, place) {
   const { path } = place, bands = bandsOf(data);
   const shared = { x: path.along, xWords: 'way driven, m', place, bands, bandName: 'scans leave the way along the passage open' };
@@ -50,5 +61,6 @@ export function along(data, place) {
     parts.push(html('p', { class: 'missing' }, 'Not shown: what the map knew of its own error. It states no covariance of its path' +
       (bands.length ? '; shaded stretches above are those that its scans leave open.' : ', and no stretch that its scans leave open.')));
   }
+  parts.push(information(data, shared));
   return [...parts, ...player(data.frames, place)];
 }

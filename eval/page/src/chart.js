@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Charts as SVG: lines with a mark that follows the place, bars. Drawn anew when their width changes.
+import { nearest } from './place.js';
 import { html, short, svg } from './words.js';
 
 const room = { left: 58, right: 14, top: 12, bottom: 44 };
@@ -12,6 +13,14 @@ function ticks(low, high, most) {
   const by = step(high - low, most), list = [];
   for (let k = Math.ceil(low / by - 1e-9); k * by <= high + 1e-9 * by; ++k) list.push(k * by);
   return list;
+}
+
+// 1, 2 and 5 times powers of ten; of many of those the powers alone.
+function logTicks(low, high) {
+  const list = [];
+  for (let decade = 10 ** Math.floor(Math.log10(low)); decade <= high; decade *= 10)
+    for (const f of [1, 2, 5]) if (f * decade >= low && f * decade <= high) list.push(f * decade);
+  return list.length > 7 ? list.filter((v) => Number.isInteger(Math.round(1e6 * Math.log10(v)) / 1e6)) : list;
 }
 
 // Values laid on pixels; `log` for an axis of powers of ten.
@@ -68,10 +77,11 @@ function outline(xs, ys, x, y) {
   return d;
 }
 
-function extent(series, withZero) {
+function extent(series, withZero, log = false) {
   let low = withZero ? 0 : Infinity, high = withZero ? 0 : -Infinity;
   for (const s of series)
     for (const v of s.y) if (v != null) (low = Math.min(low, v)), (high = Math.max(high, v));
+  if (log) return high > low ? [low / 1.15, high * 1.15] : [0.1, 10];
   if (!(high > low)) high = low + 1;
   const margin = 0.06 * (high - low);
   return [low < 0 || !withZero ? low - margin : low, high + margin];
@@ -100,24 +110,24 @@ function frame({ title, caption, keys }, draw) {
   return figure;
 }
 
-// options: title, caption, alt, x, series [{name, y, ink}], bands [[from, to]], xWords, yWords, log, height; place for
-// charts along the path, which follow it; dots for few points.
+// options: title, caption, alt, x, series [{name, y, ink}], bands [[from, to]], xWords, yWords, log (of x), logY, height;
+// place for charts along the path, which follow it; dots for few points.
 export function lines(options) {
-  const { x: xs, series, bands = [], place, log = false, dots = false, height = 210 } = options;
-  const [low, high] = extent(series, true);
+  const { x: xs, series, bands = [], place, log = false, logY = false, dots = false, height = 210 } = options;
+  const [low, high] = extent(series, !logY, logY);
   const keys = [...series];
   if (bands.length) keys.push({ name: options.bandName, band: true });
   let show = () => {};  // of the picture as it is drawn now
   place?.onChange((index) => show(index));
   return frame({ ...options, keys: keys.length > 1 ? keys : null }, (width) => {
     const box = { left: room.left, right: width - room.right, top: room.top, bottom: height - room.bottom };
-    const x = scale(xs[0], xs[xs.length - 1], box.left, box.right, log), y = scale(low, high, box.bottom, box.top);
+    const x = scale(xs[0], xs[xs.length - 1], box.left, box.right, log), y = scale(low, high, box.bottom, box.top, logY);
     const picture = svg('svg', { viewBox: `0 0 ${width} ${height}`, width, height, role: 'img', 'aria-label': options.alt });
     for (const [from, to] of bands)
       picture.append(svg('rect', { class: 'band', x: x(from), width: Math.max(1, x(to) - x(from)), y: box.top,
                                    height: box.bottom - box.top }));
     axes(picture, x, y, box, { ...options, xTicks: log ? xs : ticks(xs[0], xs[xs.length - 1], width / 110),
-                               yTicks: ticks(low, high, 5) });
+                               yTicks: logY ? logTicks(low, high) : ticks(low, high, 5) });
     for (const s of series) {
       picture.append(svg('path', { class: `line ${s.ink}`, d: outline(xs, s.y, x, y) }));
       if (dots)
@@ -138,8 +148,9 @@ function follow(picture, place, xs, series, x, y, box) {
   const points = series.map((s) => svg('circle', { class: `point ${s.ink}`, r: 4.5 }));
   picture.append(rule, ...points);
   picture.classList.add('follows');
-  const show = (index) => {
-    const px = x(xs[index]);
+  const own = xs === place.path.along;
+  const show = (at) => {
+    const index = own ? at : nearest(xs, place.path.along[at]), px = x(xs[index]);
     rule.setAttribute('x1', px), rule.setAttribute('x2', px);
     series.forEach((s, k) => {
       const v = s.y[index];
