@@ -49,18 +49,20 @@ LabelledCloud true_cloud(const Log& log, const Truth& truth, size_t every) {
 }
 
 void write_pcd(const std::string& file, const PointCloud& points) {
-  const bool stamps = !points.stamp_s.empty(), lasers = !points.laser.empty();
+  const bool stamps = !points.stamp_s.empty(), lasers = !points.laser.empty(), sigmas = !points.sigma_m.empty();
   const std::string n = std::to_string(points.size());
   std::string text = "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z" +
-                     std::string(stamps ? " stamp_s" : "") + (lasers ? " laser" : "") + "\nSIZE 4 4 4" +
-                     (stamps ? " 8" : "") + (lasers ? " 1" : "") + "\nTYPE F F F" + (stamps ? " F" : "") +
-                     (lasers ? " U" : "") + "\nCOUNT 1 1 1" + (stamps ? " 1" : "") + (lasers ? " 1" : "") + "\nWIDTH " +
+                     std::string(stamps ? " stamp_s" : "") + (lasers ? " laser" : "") + (sigmas ? " sigma_m" : "") +
+                     "\nSIZE 4 4 4" + (stamps ? " 8" : "") + (lasers ? " 1" : "") + (sigmas ? " 4" : "") +
+                     "\nTYPE F F F" + (stamps ? " F" : "") + (lasers ? " U" : "") + (sigmas ? " F" : "") +
+                     "\nCOUNT 1 1 1" + (stamps ? " 1" : "") + (lasers ? " 1" : "") + (sigmas ? " 1" : "") + "\nWIDTH " +
                      n + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + n + "\nDATA binary\n";
   const auto put = [&](const auto& value) { text.append(reinterpret_cast<const char*>(&value), sizeof value); };
   for (size_t i = 0; i < points.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) put(static_cast<float>(points.p[i][axis]));
     if (stamps) put(points.stamp_s[i]);
     if (lasers) put(points.laser[i]);
+    if (sigmas) put(points.sigma_m[i]);
   }
   write_text(file, text);
 }
@@ -136,13 +138,15 @@ PointCloud read_binary(const std::string& file, const std::string& text, const P
     throw Error(file + ": is cut short: it should hold " + std::to_string(h.points) + " points");
   PointCloud points;
   const PcdField *x = h.find("x"), *y = h.find("y"), *z = h.find("z"), *stamp = h.find("stamp_s"),
-                 *laser = h.find("laser");
+                 *laser = h.find("laser"), *sigma = h.find("sigma_m");
   for (size_t i = 0; i < h.points; ++i) {
     const char* row = text.data() + h.data + i * h.row;
     points.p.emplace_back(float_at(row + x->at, x->size), float_at(row + y->at, y->size),
                           float_at(row + z->at, z->size));
     if (stamp && stamp->type == 'F' && stamp->size == 8) points.stamp_s.push_back(float_at(row + stamp->at, 8));
     if (laser && laser->size == 1) points.laser.push_back(static_cast<std::uint8_t>(row[laser->at]));
+    if (sigma && sigma->type == 'F')
+      points.sigma_m.push_back(static_cast<float>(float_at(row + sigma->at, sigma->size)));
   }
   return points;
 }
@@ -161,6 +165,7 @@ PointCloud read_ascii(const std::string& file, const std::string& text, const Pc
     points.p.emplace_back(value["x"], value["y"], value["z"]);
     if (value.contains("stamp_s")) points.stamp_s.push_back(value["stamp_s"]);
     if (value.contains("laser")) points.laser.push_back(static_cast<std::uint8_t>(value["laser"]));
+    if (value.contains("sigma_m")) points.sigma_m.push_back(static_cast<float>(value["sigma_m"]));
   }
   return points;
 }

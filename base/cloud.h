@@ -22,7 +22,7 @@ struct LabelledCloud {
 /// @param every  takes every so many scans of each laser
 LabelledCloud true_cloud(const Log& log, const Truth& truth, size_t every = 1);
 
-/// PCD of the Point Cloud Library, version 0.7, binary: float x y z, double stamp_s, uint8 laser as far as present.
+/// PCD of the Point Cloud Library, version 0.7, binary: float x y z, double stamp_s, uint8 laser, float sigma_m as far as present.
 void write_pcd(const std::string& file, const PointCloud& points);
 /// PCD, ascii or binary (not binary_compressed), any fields beside x, y, z of 4 or 8 bytes. Errors name file and cause.
 PointCloud read_pcd(const std::string& file);

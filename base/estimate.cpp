@@ -55,6 +55,18 @@ ordered_json json_of(const DegenerateStretch& d) {
   return {{"from_s", d.from_s}, {"to_s", d.to_s}, {"sigma_m", d.sigma_m}};
 }
 
+ordered_json json_of(const RangeBias& b) {
+  return {{"laser", b.laser}, {"bias_m", b.bias_m}, {"sigma_m", b.sigma_m}};
+}
+
+ordered_json json_of(const VolumePart& p) {
+  return {{"from_s", p.from_s},
+          {"to_s", p.to_s},
+          {"length_m", p.length_m},
+          {"volume_m3", p.volume_m3},
+          {"sigma_m3", p.sigma_m3}};
+}
+
 ordered_json json_of(const std::optional<double>& x) {
   return x ? ordered_json(*x) : ordered_json();
 }
@@ -119,6 +131,8 @@ std::string map_text(const Estimate& e) {
       {"method", ordered_json(e.method).dump()},
       {"volume_m3", json_of(e.volume_m3).dump()},
       {"volume_sigma_m3", json_of(e.volume_sigma_m3).dump()},
+      {"volume_parts", lines(e.volume_parts)},
+      {"range_bias", lines(e.range_bias)},
       {"converged", ordered_json(e.converged).dump()},
       {"notes", ordered_json(e.notes).dump()},
       {"graph", e.graph ? json_of(*e.graph).dump(4) : "null"},
@@ -137,6 +151,13 @@ void read_map_text(const std::string& file, Estimate& e) {
     e.method = j.at("method").get<std::string>();
     e.volume_m3 = number_or_none(j.at("volume_m3"));
     e.volume_sigma_m3 = number_or_none(j.at("volume_sigma_m3"));
+    for (const ordered_json& p : j.value("volume_parts", ordered_json::array()))
+      e.volume_parts.push_back({p.at("from_s").get<double>(), p.at("to_s").get<double>(),
+                                p.at("length_m").get<double>(), p.at("volume_m3").get<double>(),
+                                p.at("sigma_m3").get<double>()});
+    for (const ordered_json& b : j.value("range_bias", ordered_json::array()))
+      e.range_bias.push_back(
+          {b.at("laser").get<std::string>(), b.at("bias_m").get<double>(), b.at("sigma_m").get<double>()});
     e.converged = j.at("converged").get<bool>();
     e.notes = j.at("notes").get<std::vector<std::string>>();
     if (j.contains("graph") && !j.at("graph").is_null()) e.graph = solved_of(j.at("graph"));
@@ -176,7 +197,7 @@ std::vector<Pose2> load_planar(const std::string& file, size_t expected) {
 void save_graph(const std::string& dir, const SolvedGraph& g) {
   std::error_code absent;
   for (const char* file : {"/trajectory.tum", "/open_loop.tum", "/planar.tum", "/grid.pgm", "/grid.yaml",
-                           "/ribs.geojson", "/ribs.dxf", "/points.ply", "/surface.ply"})
+                           "/ribs.geojson", "/ribs.dxf", "/points.ply", "/surface.ply", "/surface.glb"})
     fs::remove(dir + file, absent);
   write_g2o(dir + "/graph.g2o", g.graph, g.id);
   std::string rows;
@@ -194,14 +215,17 @@ void save_estimate(const std::string& dir, const Estimate& e) {
   save_planar(dir + "/planar.tum", e.path.stamp_s, e.planar);
   std::error_code absent;
   for (const char* file : {"/grid.pgm", "/grid.yaml", "/ribs.geojson", "/ribs.dxf", "/points.ply", "/surface.ply",
-                           "/graph.g2o", "/path_covariance.txt"})
+                           "/surface.glb", "/graph.g2o", "/path_covariance.txt"})
     fs::remove(dir + file, absent);
   if (!e.grid.log_odds.empty()) {
     write_grid(dir + "/grid.pgm", e.grid);
     write_rib_lines(dir + "/ribs", rib_lines(e.grid));
   }
   if (e.points.size() > 0) write_points(dir + "/points.ply", e.points);
-  if (!e.surface.face.empty()) write_mesh(dir + "/surface.ply", e.surface);
+  if (!e.surface.face.empty()) {
+    write_mesh(dir + "/surface.ply", e.surface);
+    write_glb(dir + "/surface.glb", e.surface);
+  }
   if (e.graph) write_g2o(dir + "/graph.g2o", e.graph->graph, e.graph->id);
   if (!e.covariance.empty()) write_covariances(dir + "/path_covariance.txt", e.path, e.covariance);
   write_text(dir + "/map.json", map_text(e));

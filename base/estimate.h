@@ -35,6 +35,19 @@ struct DegenerateStretch {
   double sigma_m;  // along the weak direction, at the end of the stretch
 };
 
+/// A laser's constant range error as the mapper found it; it is taken off before points and volume are made.
+struct RangeBias {
+  std::string laser;
+  double bias_m, sigma_m;  // measured minus true
+};
+
+/// The mapped void nearest to what was driven from from_s to to_s, whenever it was seen.
+struct VolumePart {
+  double from_s, to_s;
+  double length_m;  // of the path
+  double volume_m3, sigma_m3;
+};
+
 /// What a mapper says, in M (the frame of the first pose of the mapping laser's body).
 struct Estimate {
   std::string method;
@@ -52,11 +65,13 @@ struct Estimate {
   Mesh surface;                     // boundary of the mapped void, closed; empty where the rig cannot see it
   std::optional<double> volume_m3;  // of the mapped void; none where the rig has no upward laser
   std::optional<double> volume_sigma_m3;
-  std::vector<std::string> notes;  // what was dropped or could not be done, one sentence each
+  std::vector<VolumePart> volume_parts;  // in the order of time; their volumes add up to volume_m3
+  std::vector<RangeBias> range_bias;     // of the lasers that it could be found for
+  std::vector<std::string> notes;        // what was dropped or could not be done, one sentence each
 };
 
 /// DIR/trajectory.tum open_loop.tum planar.tum path_covariance.txt grid.pgm grid.yaml ribs.geojson ribs.dxf points.ply
-/// surface.ply graph.g2o map.json. What the estimate lacks has no file. map.json comes last: a folder that holds it is whole.
+/// surface.ply surface.glb graph.g2o map.json. What the estimate lacks has no file. map.json comes last: a folder that holds it is whole.
 void save_estimate(const std::string& dir, const Estimate& estimate);
 /// The same; the grid's cells come back as free, occupied or unknown. A missing or foreign file is an Error.
 Estimate load_estimate(const std::string& dir);

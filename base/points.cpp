@@ -17,6 +17,8 @@ void write_points(const std::string& file, const PointCloud& points) {
   if (!points.stamp_s.empty()) e.columns.push_back({"stamp_s", PlyType::float64, false, points.stamp_s, {}});
   if (!points.laser.empty())
     e.columns.push_back({"laser", PlyType::uint8, false, {points.laser.begin(), points.laser.end()}, {}});
+  if (!points.sigma_m.empty())
+    e.columns.push_back({"sigma_m", PlyType::float32, false, {points.sigma_m.begin(), points.sigma_m.end()}, {}});
   write_ply(file, {{std::move(e)}});
 }
 
@@ -33,6 +35,7 @@ PointCloud read_points(const std::string& file) {
   if (const PlyColumn* c = e->find("stamp_s"); c && !c->list) points.stamp_s = c->value;
   if (const PlyColumn* c = e->find("laser"); c && !c->list)
     for (double v : c->value) points.laser.push_back(static_cast<std::uint8_t>(v));
+  if (const PlyColumn* c = e->find("sigma_m"); c && !c->list) points.sigma_m.assign(c->value.begin(), c->value.end());
   return points;
 }
 

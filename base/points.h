@@ -14,11 +14,12 @@ struct PointCloud {
   std::vector<Vec3> p;              // (n x 3) metres
   std::vector<double> stamp_s;      // (n) or empty: when the beam left; with the path this gives p in B
   std::vector<std::uint8_t> laser;  // (n) or empty: index in the rig
+  std::vector<float> sigma_m = {};  // (n) or empty: 1 sd along the beam
 
   size_t size() const { return p.size(); }
 };
 
-/// Binary little-endian PLY: float x y z, double stamp_s, uchar laser.
+/// Binary little-endian PLY: float x y z, and what there is of double stamp_s, uchar laser, float sigma_m.
 void write_points(const std::string& file, const PointCloud& points);
 /// Any PLY with x, y, z.
 PointCloud read_points(const std::string& file);

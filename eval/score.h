@@ -111,7 +111,7 @@ struct ScoreSettings {
 Fields fields(ScoreSettings& settings);
 
 /// Raised whenever a metric's definition changes, so that numbers of two definitions are never held against each other.
-constexpr int evaluator_version = 1;
+constexpr int evaluator_version = 2;
 
 /// Holds an estimate against the truth. All lengths in m, angles in degrees where a name ends in _deg.
 /// @param truth     of the same world: Error (not_comparable) when its hash is another

@@ -198,8 +198,9 @@ VolumeDomain volume_domain(const Mesh& mesh, const Patches& patches, const Obser
   const Vec2 margin = Vec2::Constant(settings.domain_rock_m + settings.domain_cell_m);
   const Dexels like = empty_dexels(low - margin, high + margin, settings.domain_cell_m);
   const Dexels space = dexels_of(mesh, like);
-  return {intersect(swept_by(scans, like, settings, progress), space),
-          subtract(near_surface(patches, observable, settings.domain_rock_m, like), space)};
+  Dexels swept = intersect(swept_by(scans, like, settings, progress), space);
+  Dexels rock = subtract(near_surface(patches, observable, settings.domain_rock_m, like), space);
+  return {std::move(swept), std::move(rock), space};
 }
 
 std::vector<PassageVolume> add_volume(const MetricList& list, double true_m3, const std::optional<VolumeDomain>& domain,
@@ -207,7 +208,8 @@ std::vector<PassageVolume> add_volume(const MetricList& list, double true_m3, co
                                       const std::string& why_unmapped, std::optional<double> claimed_m3,
                                       std::optional<double> claimed_sigma_m3, const PassageMap& passages) {
   std::vector<PassageVolume> shares;
-  double observable_m3 = none, mapped_m3 = none, over_m3 = none, under_m3 = none, extrapolated_m3 = none;
+  double observable_m3 = none, mapped_m3 = none, over_m3 = none, under_m3 = none, extrapolated_m3 = none,
+         unseen_m3 = none;
   std::int64_t columns = 0;
   std::string reason = why.empty() ? why_unmapped : why;
   if (domain) {
@@ -222,6 +224,7 @@ std::vector<PassageVolume> add_volume(const MetricList& list, double true_m3, co
     under_m3 = observable_m3 - right_m3;
     mapped_m3 = right_m3 + over_m3;
     extrapolated_m3 = enclosed_volume(*mapped) - mapped_m3;
+    unseen_m3 = domain->space.offset.empty() ? 0 : intersect(solid, domain->space).volume_m3() - right_m3;
     shares = shares_of(domain->swept, {&right, &over}, passages);
   } else if (domain) {
     shares = shares_of(domain->swept, {}, passages);
@@ -238,13 +241,15 @@ std::vector<PassageVolume> add_volume(const MetricList& list, double true_m3, co
   add("iou", observable_m3 > 0 ? (mapped_m3 - over_m3) / (observable_m3 + over_m3) : none, "share", Better::higher,
       reason.empty() ? "nothing was observable" : reason);
   add("extrapolated_m3", extrapolated_m3, "m3", Better::lower, reason);
+  add("unseen_void_m3", unseen_m3, "m3", Better::lower, reason);
   const std::string unclaimed = "the mapper names no volume";
   add("claimed_m3", claimed_m3.value_or(none), "m3", Better::higher, unclaimed);
   add("sigma_percent", claimed_m3 && claimed_sigma_m3 && *claimed_m3 > 0 ? 100 * *claimed_sigma_m3 / *claimed_m3 : none,
       "percent", Better::lower, claimed_m3 ? "the mapper names no sigma" : unclaimed);
-  const double off = claimed_m3 && claimed_sigma_m3 && *claimed_sigma_m3 > 0
-                         ? (*claimed_m3 - observable_m3) / *claimed_sigma_m3
-                         : none;
+  const double off =
+      claimed_m3 && claimed_sigma_m3 && *claimed_sigma_m3 > 0
+          ? (*claimed_m3 - observable_m3 - (std::isfinite(unseen_m3) ? unseen_m3 : 0)) / *claimed_sigma_m3
+          : none;
   const std::string no_claim = !why.empty() ? why : claimed_m3 ? "the mapper names no sigma" : unclaimed;
   add("claim_sigmas", off, "ratio", Better::lower, no_claim);
   add("claim_holds_95", std::isfinite(off) ? std::abs(off) <= 1.96 : none, "share", Better::higher, no_claim);

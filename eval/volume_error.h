@@ -20,6 +20,7 @@ namespace adit {
 ///   rock   rock within domain_rock_m of the observable surface: without it no over-claim could be seen
 struct VolumeDomain {
   Dexels swept, rock;
+  Dexels space = {};  // all of the void; empty: not known beyond `swept`
 };
 
 /// Fans are spanned by every beam about domain_beam_deg apart; a cell between four ends is cut back to its nearest end
@@ -36,8 +37,8 @@ struct PassageVolume {
 
 /// true_m3 (all of the void), observable_m3 (void in the domain), and of the mapped void in the domain: mapped_m3,
 /// error_percent (signed), overbreak_m3 (mapped rock), underbreak_m3 (void not mapped), iou; extrapolated_m3 (mapped
-/// outside of the domain); claimed_m3, sigma_percent: what the mapper itself says; claim_sigmas: how many of its sigmas
-/// its claim lies beside observable_m3 (signed); claim_holds_95: 1 within 1.96 of them, else 0.
+/// outside of the domain), unseen_void_m3 (what of it is void); claimed_m3, sigma_percent: what the mapper itself says; claim_sigmas: how many of its sigmas
+/// its claim lies beside observable_m3 and unseen_void_m3 (signed); claim_holds_95: 1 within 1.96 of them, else 0.
 /// @param domain  or none with `why`
 /// @param mapped  boundary of the mapped void in W, closed; none with `why_unmapped`
 /// @return (passages) the shares of the columns nearest to each passage's centre line; empty without a domain

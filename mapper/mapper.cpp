@@ -43,11 +43,15 @@ void add_height(const Log& level, const Log& log, const MapSettings& settings, c
   if (!tilt.note.empty()) estimate.notes.push_back(tilt.note);
   estimate.path = std::move(tilt.path);
   const Log corrected = without_bias(nods(log) ? log : level, tilt.range_bias_m);
-  estimate.points = map_points(corrected, tilt.dense, settings.volume);
-  MappedVoid mapped = map_void(corrected, tilt.dense, settings.volume, progress);
-  estimate.surface = std::move(mapped.surface);
+  estimate.points = map_points(corrected, tilt.dense, settings.volume, tilt.bias_covariance);
+  for (const int m : tilt.biased)
+    estimate.range_bias.push_back(
+        {log.rig.mounts[m].name, tilt.range_bias_m[m], std::sqrt(tilt.bias_covariance(m, m))});
+  MappedVoid mapped = map_void(corrected, tilt.dense, settings.volume, progress, tilt.bias_covariance);
   estimate.volume_m3 = mapped.volume_m3;
   estimate.volume_sigma_m3 = mapped.volume_sigma_m3;
+  estimate.volume_parts = volume_parts(mapped, estimate.path, settings.volume);
+  estimate.surface = std::move(mapped.surface);
   if (!mapped.volume_m3) estimate.notes.push_back("the rig has no upward laser: no surface and no volume");
 }
 

@@ -5,6 +5,7 @@
 
 #include <cholmod.h>
 
+#include <algorithm>
 #include <memory>
 
 extern "C" void openblas_set_num_threads(int);
@@ -38,7 +39,7 @@ class Workspace {
 
 }  // namespace
 
-SparseSolution solve_least_squares(const SparseRows& problem) {
+SparseSolution solve_least_squares(const SparseRows& problem, const std::vector<int>& wanted) {
   Workspace workspace;
   cholmod_common* common = workspace.get();
   const auto drop_sparse = [&](cholmod_sparse* p) { cholmod_free_sparse(&p, common); };
@@ -86,6 +87,16 @@ SparseSolution solve_least_squares(const SparseRows& problem) {
   ADIT_CHECK(x);
   const auto* values = static_cast<const double*>(x->x);
   solution.x.assign(values, values + problem.unknowns);
+
+  const auto n = static_cast<Eigen::Index>(wanted.size());
+  solution.covariance.resize(n, n);
+  for (Eigen::Index c = 0; c < n; ++c) {
+    std::fill(b, b + problem.unknowns, 0.0);
+    b[wanted[c]] = 1;
+    x.reset(cholmod_solve(CHOLMOD_A, factor.get(), right.get(), common));
+    ADIT_CHECK(x);
+    for (Eigen::Index r = 0; r < n; ++r) solution.covariance(r, c) = static_cast<const double*>(x->x)[wanted[r]];
+  }
   return solution;
 }
 

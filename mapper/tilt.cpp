@@ -12,6 +12,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 namespace adit {
 namespace {
@@ -344,37 +346,58 @@ Problem state(const Log& log, const std::vector<double>& stamp_s, const std::vec
   return problem;
 }
 
-TiltSolution sampled(const Motion& motion, const std::vector<double>& stamp_s) {
+/// The motion at the stamps, and every 20 ms within them.
+std::pair<Trajectory, Trajectory> sampled(const Motion& motion, const std::vector<double>& stamp_s) {
   constexpr double step_s = 0.02;
-  TiltSolution solution;
-  solution.path.stamp_s = stamp_s;
-  solution.path.X_WB.resize(stamp_s.size());
+  Trajectory path, dense;
+  path.stamp_s = stamp_s;
+  path.X_WB.resize(stamp_s.size());
   parallel_for(
-      stamp_s.size(), [&](size_t n) { solution.path.X_WB[n] = motion.at(stamp_s[n]); }, 64);
+      stamp_s.size(), [&](size_t n) { path.X_WB[n] = motion.at(stamp_s[n]); }, 64);
   const double length_s = stamp_s.back() - stamp_s.front();
   const auto steps = std::max<size_t>(1, static_cast<size_t>(std::ceil(length_s / step_s)));
-  solution.dense.stamp_s.resize(steps + 1);
-  solution.dense.X_WB.resize(steps + 1);
+  dense.stamp_s.resize(steps + 1);
+  dense.X_WB.resize(steps + 1);
   parallel_for(
       steps + 1,
       [&](size_t n) {
         const double t = n == steps ? stamp_s.back()
                                     : stamp_s.front() + length_s * static_cast<double>(n) / static_cast<double>(steps);
-        solution.dense.stamp_s[n] = t;
-        solution.dense.X_WB[n] = motion.at(t);
+        dense.stamp_s[n] = t;
+        dense.X_WB[n] = motion.at(t);
       },
       64);
-  return solution;
+  return {std::move(path), std::move(dense)};
 }
 
-TiltSolution stays_planar(size_t lasers, const std::vector<double>& stamp_s, const std::vector<Pose2>& planar,
+/// What the sheets alone say of the lasers' constant errors: even within their bands.
+Eigen::MatrixXd stated_bias(const Rig& rig) {
+  const auto n = static_cast<Eigen::Index>(rig.mounts.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index m = 0; m < n; ++m) covariance(m, m) = std::pow(rig.mounts[m].laser.bias_m, 2) / 3;
+  return covariance;
+}
+
+/// That with what was estimated put in its place.
+Eigen::MatrixXd bias_covariance(const Rig& rig, const Problem& problem, const std::vector<int>& lasers,
+                                const Eigen::MatrixXd& formal) {
+  Eigen::MatrixXd covariance = stated_bias(rig);
+  const double scale = std::pow(problem.settings.bias_doubt * problem.rms_m / problem.settings.sigma_m, 2);
+  for (size_t a = 0; a < lasers.size(); ++a)
+    for (size_t b = 0; b < lasers.size(); ++b)
+      covariance(lasers[a], lasers[b]) = scale * formal(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+  return covariance;
+}
+
+TiltSolution stays_planar(const Rig& rig, const std::vector<double>& stamp_s, const std::vector<Pose2>& planar,
                           std::string note) {
   TiltSolution solution;
   solution.path.stamp_s = stamp_s;
   for (const Pose2& X : planar) solution.path.X_WB.push_back(lift(X));
   solution.dense = solution.path;
   solution.note = std::move(note);
-  solution.range_bias_m.assign(lasers, 0.0);
+  solution.range_bias_m.assign(rig.mounts.size(), 0.0);
+  solution.bias_covariance = stated_bias(rig);
   return solution;
 }
 
@@ -394,6 +417,7 @@ Fields fields(TiltSettings& s) {
       {"curvature_m", &s.curvature_m, "prior sd of the second difference of neighbouring nodes", 1e-4, 10},
       {"rib_sigma_deg", &s.rib_sigma_deg, "trust in a rib being vertical, for one rib in one scan; 0 = none", 0, 90},
       {"bias_sigma_m", &s.bias_sigma_m, "prior sd of each laser's constant range error; 0 = taken as none", 0, 1},
+      {"bias_doubt", &s.bias_doubt, "the formal sd of the range errors is so many times too small", 0, 1000},
       {"iterations", &s.iterations, "of Gauss-Newton", 1, 50}};
 }
 
@@ -401,28 +425,35 @@ TiltSolution solve_tilt(const Log& log, const std::vector<double>& stamp_s, cons
                         const TiltSettings& settings, const Progress& progress) {
   ADIT_CHECK(stamp_s.size() == planar.size());
   if (find_view(log.rig, View::forward_vertical) < 0 && find_view(log.rig, View::down) < 0)
-    return stays_planar(log.rig.mounts.size(), stamp_s, planar,
+    return stays_planar(log.rig, stamp_s, planar,
                         "no forward vertical and no downward laser: height, pitch and roll are taken as zero");
   if (stamp_s.size() < 2)
-    return stays_planar(log.rig.mounts.size(), stamp_s, planar,
-                        "fewer than two scans: height, pitch and roll are taken as zero");
+    return stays_planar(log.rig, stamp_s, planar, "fewer than two scans: height, pitch and roll are taken as zero");
   Problem problem = state(log, stamp_s, planar, settings);
   if (problem.data.beams.empty())
-    return stays_planar(log.rig.mounts.size(), stamp_s, planar,
+    return stays_planar(log.rig, stamp_s, planar,
                         "no beam met floor or roof: height, pitch and roll are taken as zero");
-  double operations = 0;
+  SparseSolution last;
+  TiltSolution solution;
+  for (size_t m = 0; m < problem.bias_column.size(); ++m)
+    if (problem.bias_column[m] >= 0) solution.biased.push_back(static_cast<int>(m));
   for (int n = 0; n < settings.iterations; ++n) {
     progress("tilt", n, settings.iterations);
-    if (n + 1 == settings.iterations) problem.lattice = resampled(problem.lattice, settings.node_m);
-    const SparseSolution solution = solve_least_squares(linearise(problem));
-    operations = solution.factor_operations;
-    take(problem, solution.x);
+    const bool ends = n + 1 == settings.iterations;
+    if (ends) problem.lattice = resampled(problem.lattice, settings.node_m);
+    const SparseRows rows = linearise(problem);
+    std::vector<int> wanted;
+    for (const int m : solution.biased)
+      if (ends) wanted.push_back(problem.bias_column[m]);
+    last = solve_least_squares(rows, wanted);
+    take(problem, last.x);
   }
   progress("tilt", settings.iterations, settings.iterations);
-  TiltSolution solution = sampled(problem.motion, stamp_s);
+  std::tie(solution.path, solution.dense) = sampled(problem.motion, stamp_s);
   solution.range_bias_m = problem.bias_m;
   solution.rms_m = problem.rms_m;
-  solution.factor_operations = operations;
+  solution.bias_covariance = bias_covariance(log.rig, problem, solution.biased, last.covariance);
+  solution.factor_operations = last.factor_operations;
   return solution;
 }
 

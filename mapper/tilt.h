@@ -5,6 +5,8 @@
 #include "base/progress.h"
 #include "base/recording.h"
 
+#include <Eigen/Core>
+
 #include <string>
 #include <vector>
 
@@ -23,6 +25,7 @@ struct TiltSettings {
   double curvature_m = 0.05;   // prior sd of the second difference of neighbouring nodes
   double rib_sigma_deg = 8;    // trust in a rib being vertical, for one rib in one scan; 0 = none
   double bias_sigma_m = 0.01;  // prior sd of each laser's constant range error; 0 = taken as none
+  double bias_doubt = 4;       // the formal sd of the range errors is so many times too small
   int iterations = 3;
 };
 Fields fields(TiltSettings& s);
@@ -32,6 +35,8 @@ struct TiltSolution {
   Trajectory path;                   // X_MB at the stamps that were given
   Trajectory dense;                  // the same motion every 20 ms within them: what beams between the stamps need
   std::vector<double> range_bias_m;  // (lasers) estimated, measured minus true; 0 where not estimated
+  std::vector<int> biased;           // lasers for which it was estimated
+  Eigen::MatrixXd bias_covariance;   // (lasers x lasers) as solve_tilt says; where not estimated, of the sheet's band
   double rms_m = 0;                  // of the residuals of floor and roof, weighted by the kernel
   double factor_operations = 0;      // of one factorisation
   std::string note;                  // why the path stayed planar; empty otherwise
@@ -47,6 +52,8 @@ struct TiltSolution {
 /// x and y: what the planar poses fix is where the horizontal laser stands; the body moves under it as it pitches and
 /// rolls. The tilt of the whole is a gauge without gravity: the ribs fix it, else the start counts as level. A rig with
 /// neither a forward vertical nor a downward laser keeps the planar path, level at z = 0, and says so in `note`.
+/// bias_covariance: the formal one for residuals of rms_m, times bias_doubt squared, since what the lattice cannot follow
+/// is not white; a laser without an estimate has that of its stated band, bias_m^2 / 3.
 TiltSolution solve_tilt(const Log& log, const std::vector<double>& stamp_s, const std::vector<Pose2>& planar,
                         const TiltSettings& settings, const Progress& progress = {});
 

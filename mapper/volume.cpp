@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "mapper/fan.h"
+#include "mapper/stretches.h"
 #include "mapper/surface.h"
 
 #include <algorithm>
@@ -151,33 +152,50 @@ std::vector<int> bounding_lasers(const Rig& rig) {
   return lasers_of(rig, {View::up, View::down});
 }
 
-/// From the stated systematic errors of the lasers that bound the surface.
-double sigma_of(const Log& log, const std::vector<int>& lasers, const Mesh& surface, double volume_m3) {
-  double area = 0;
-  for (size_t f = 0; f < surface.face.size(); ++f) area += surface.area(f);
-  double variance = std::pow(0.001 * volume_m3, 2);
-  for (const int laser : lasers) {
-    const double seen = area / static_cast<double>(lasers.size());
-    variance += std::pow(log.rig.mounts[laser].laser.bias_m * seen, 2) / 3;
-  }
-  return std::sqrt(variance);
+/// Of the constant errors of two lasers, m^2.
+double bias_variance(const Log& log, int a, int b, const Eigen::MatrixXd& given) {
+  if (given.size() > 0) return given(a, b);
+  return a == b ? std::pow(log.rig.mounts[a].laser.bias_m, 2) / 3 : 0;
+}
+
+/// Variance by the lasers' constant errors of a volume of 1 m3 with its share of the surface: the upward and the downward
+/// laser saw half of it each.
+double relative_variance(const Log& log, const Mesh& surface, double volume_m3, const Eigen::MatrixXd& given) {
+  const std::vector<int> lasers = bounding_lasers(log.rig);
+  double area_m2 = 0;
+  for (size_t f = 0; f < surface.face.size(); ++f) area_m2 += surface.area(f);
+  const double seen = volume_m3 > 0 ? area_m2 / volume_m3 / static_cast<double>(lasers.size()) : 0;
+  double variance = 0;
+  for (const int a : lasers)
+    for (const int b : lasers) variance += seen * seen * bias_variance(log, a, b, given);
+  return variance;
+}
+
+double sigma_of(double volume_m3, double relative_variance, const VolumeSettings& settings) {
+  const double common = relative_variance + std::pow(settings.common_percent / 100, 2);
+  return std::sqrt(common * volume_m3 * volume_m3 + std::pow(settings.local_sigma, 2) * volume_m3);
 }
 
 }  // namespace
 
 Fields fields(VolumeSettings& s) {
-  return {{"cell_m", &s.cell_m, "edge of the columns on which the void is united", 0.01, 1},
-          {"surface_cells", &s.surface_cells, "columns along the edge of a voxel of the surface", 1, 20},
-          {"beam_step", &s.beam_step, "every beam_step-th beam bounds the void", 1, 60},
-          {"section_m", &s.section_m, "least way between two sections", 0, 1},
-          {"section_gap_m", &s.section_gap_m, "most way between two sections that are joined", 0.01, 5},
-          {"jump_m", &s.jump_m, "neighbouring ranges that differ by more, plus a fifth, are two surfaces", 0, 100},
-          {"close_m", &s.close_m, "gaps in height up to this are filled", 0, 1},
-          {"range_m", &s.range_m, "farther echoes bound nothing", 0.1, 1000},
-          {"point_voxel_m", &s.point_voxel_m, "one point a voxel of this edge", 0.001, 10}};
+  return {
+      {"cell_m", &s.cell_m, "edge of the columns on which the void is united", 0.01, 1},
+      {"surface_cells", &s.surface_cells, "columns along the edge of a voxel of the surface", 1, 20},
+      {"beam_step", &s.beam_step, "every beam_step-th beam bounds the void", 1, 60},
+      {"section_m", &s.section_m, "least way between two sections", 0, 1},
+      {"section_gap_m", &s.section_gap_m, "most way between two sections that are joined", 0.01, 5},
+      {"jump_m", &s.jump_m, "neighbouring ranges that differ by more, plus a fifth, are two surfaces", 0, 100},
+      {"close_m", &s.close_m, "gaps in height up to this are filled", 0, 1},
+      {"range_m", &s.range_m, "farther echoes bound nothing", 0.1, 1000},
+      {"point_voxel_m", &s.point_voxel_m, "one point a voxel of this edge", 0.001, 10},
+      {"common_percent", &s.common_percent, "sd of the volume that is the same everywhere", 0, 100},
+      {"local_sigma", &s.local_sigma, "sd of the volume of a cubic metre, growing with the root of the volume", 0, 10},
+      {"end_sigma_m3", &s.end_sigma_m3, "sd of a stretch's volume by where it begins and ends", 0, 1000}};
 }
 
-PointCloud map_points(const Log& log, const Trajectory& X_MB, const VolumeSettings& settings) {
+PointCloud map_points(const Log& log, const Trajectory& X_MB, const VolumeSettings& settings,
+                      const Eigen::MatrixXd& bias_covariance) {
   struct Scan {
     double stamp_s;
     int laser;
@@ -188,6 +206,10 @@ PointCloud map_points(const Log& log, const Trajectory& X_MB, const VolumeSettin
     if (const int laser = find_view(log.rig, view); laser >= 0)
       for (const size_t n : covered_scans(log, laser, X_MB)) scans.push_back({log.scans[laser].stamp_s[n], laser, n});
   std::stable_sort(scans.begin(), scans.end(), [](const Scan& a, const Scan& b) { return a.stamp_s < b.stamp_s; });
+  std::vector<double> sigma_m;  // (lasers)
+  for (size_t m = 0; m < log.rig.mounts.size(); ++m)
+    sigma_m.push_back(std::sqrt(std::pow(log.rig.mounts[m].laser.sigma_m, 2) +
+                                bias_variance(log, static_cast<int>(m), static_cast<int>(m), bias_covariance)));
   PointCloud cloud;
   std::unordered_set<std::uint64_t> taken;  // asked only, never walked: its order is not in the result
   constexpr size_t batch = 512;
@@ -208,6 +230,7 @@ PointCloud map_points(const Log& log, const Trajectory& X_MB, const VolumeSettin
         cloud.p.push_back(fans[n][k].end);
         cloud.stamp_s.push_back(scan.stamp_s + model.beam_offset_s(static_cast<int>(k)));
         cloud.laser.push_back(static_cast<std::uint8_t>(scan.laser));
+        cloud.sigma_m.push_back(static_cast<float>(sigma_m[scan.laser]));
       }
     }
   }
@@ -221,15 +244,45 @@ Dexels swept_void(const Log& log, const Trajectory& X_MB, const VolumeSettings& 
   return closed(solid.solid(), settings.close_m);
 }
 
-MappedVoid map_void(const Log& log, const Trajectory& X_MB, const VolumeSettings& settings, const Progress& progress) {
-  const std::vector<int> lasers = carving_lasers(log.rig);
-  if (lasers.empty()) return {};
-  const Dexels solid = swept_void(log, X_MB, settings, progress);
+MappedVoid map_void(const Log& log, const Trajectory& X_MB, const VolumeSettings& settings, const Progress& progress,
+                    const Eigen::MatrixXd& bias_covariance) {
+  if (carving_lasers(log.rig).empty()) return {};
   MappedVoid mapped;
-  mapped.surface = boundary_of(solid, settings.surface_cells);
-  mapped.volume_m3 = solid.volume_m3();
-  mapped.volume_sigma_m3 = sigma_of(log, bounding_lasers(log.rig), mapped.surface, *mapped.volume_m3);
+  mapped.solid = swept_void(log, X_MB, settings, progress);
+  mapped.surface = boundary_of(mapped.solid, settings.surface_cells);
+  mapped.volume_m3 = enclosed_volume(mapped.surface);
+  mapped.relative_variance = relative_variance(log, mapped.surface, *mapped.volume_m3, bias_covariance);
+  mapped.volume_sigma_m3 = sigma_of(*mapped.volume_m3, mapped.relative_variance, settings);
   return mapped;
+}
+
+std::vector<VolumePart> volume_parts(const MappedVoid& mapped, const Trajectory& X_MB, const VolumeSettings& settings) {
+  const Dexels& solid = mapped.solid;
+  if (solid.interval.empty()) return {};
+  const Stretches stretches(X_MB);
+  std::vector<std::vector<double>> of_row(solid.height, std::vector<double>(stretches.all().size(), 0));
+  parallel_for(
+      of_row.size(),
+      [&](size_t j) {
+        for (int i = 0; i < solid.width; ++i) {
+          double height_m = 0;
+          for (const Interval& s : solid.column(i, static_cast<int>(j))) height_m += s.high_m - s.low_m;
+          if (height_m > 0) of_row[j][stretches.nearest(solid.axis(i, static_cast<int>(j)))] += height_m;
+        }
+      },
+      16);
+  // The surface rounds the columns' edges; what it loses there it loses everywhere alike.
+  const double share = *mapped.volume_m3 / solid.volume_m3();
+  std::vector<VolumePart> parts;
+  for (size_t k = 0; k < stretches.all().size(); ++k) {
+    const Stretch& s = stretches.all()[k];
+    double height_m = 0;
+    for (const auto& row : of_row) height_m += row[k];
+    const double volume_m3 = share * height_m * solid.cell_m * solid.cell_m;
+    parts.push_back({s.from_s, s.to_s, s.length_m, volume_m3,
+                     std::hypot(sigma_of(volume_m3, mapped.relative_variance, settings), settings.end_sigma_m3)});
+  }
+  return parts;
 }
 
 }  // namespace adit

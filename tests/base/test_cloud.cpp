@@ -72,13 +72,15 @@ TEST(Cloud, EachBeamIsLaidFromWhereItsLaserTrulyWas) {
 }
 
 TEST(Cloud, PcdComesBackBitForBitButForFloats) {
-  const PointCloud c = few();
+  PointCloud c = few();
+  c.sigma_m.assign(c.size(), 0.25F);
   write_pcd(scratch("a.pcd"), c);
   const PointCloud back = read_pcd(scratch("a.pcd"));
   ASSERT_EQ(back.size(), c.size());
   for (size_t i = 0; i < c.size(); ++i) EXPECT_EQ(back.p[i], c.p[i]);  // halves and quarters are floats
   EXPECT_EQ(back.stamp_s, c.stamp_s);
   EXPECT_EQ(back.laser, c.laser);
+  EXPECT_EQ(back.sigma_m, c.sigma_m);
 }
 
 TEST(Cloud, AsciiPcdWithForeignFieldsIsRead) {

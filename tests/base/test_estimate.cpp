@@ -42,6 +42,9 @@ Estimate small_estimate() {
   e.degenerate = {{0.2, 0.4, 0.125}};
   e.grid = small_grid();
   e.points.p = {Vec3(1, 2, 3)};
+  e.points.sigma_m = {0.125F};
+  e.volume_parts = {{0, 0.25, 2, 8, 0.5}, {0.25, 0.4, 1, 4.5, 0.25}};
+  e.range_bias = {{"up", -0.004, 0.001}};
   e.volume_m3 = 12.5;
   e.notes = {"one sentence"};
   return e;
@@ -119,6 +122,29 @@ TEST(EstimateFolder, WhatIsSavedComesBack) {
   EXPECT_FALSE(back.volume_sigma_m3.has_value());
   EXPECT_EQ(back.notes, e.notes);
   EXPECT_EQ(back.points.size(), 1u);
+  EXPECT_EQ(back.points.sigma_m, e.points.sigma_m);
+  ASSERT_EQ(back.volume_parts.size(), 2u);
+  EXPECT_EQ(back.volume_parts[1].from_s, 0.25);
+  EXPECT_EQ(back.volume_parts[1].volume_m3, 4.5);
+  EXPECT_EQ(back.volume_parts[1].sigma_m3, 0.25);
+  ASSERT_EQ(back.range_bias.size(), 1u);
+  EXPECT_EQ(back.range_bias[0].laser, "up");
+  EXPECT_EQ(back.range_bias[0].sigma_m, 0.001);
+}
+
+TEST(EstimateFolder, AMapJsonFromBeforePartsAndRangeErrorsIsRead) {
+  const std::string dir = fresh_folder("estimate_old");
+  Estimate e = small_estimate();
+  e.volume_parts.clear(), e.range_bias.clear();
+  save_estimate(dir, e);
+  std::string text = read_text(dir + "/map.json");
+  for (const std::string line : {"  \"volume_parts\": [],\n", "  \"range_bias\": [],\n"}) {
+    const size_t at = text.find(line);
+    ASSERT_NE(at, std::string::npos) << line;
+    text.erase(at, line.size());
+  }
+  write_text(dir + "/map.json", text);
+  EXPECT_EQ(load_estimate(dir).volume_m3, e.volume_m3);
 }
 
 TEST(EstimateFolder, WhatAnEstimateLacksHasNoFileEvenOverAnEarlierOne) {

@@ -155,7 +155,8 @@ TEST(Worked, BrierIsTheSquareOfWhatItIsUnsure) {
 
 TEST(Worked, AClaimIsHeldAgainstWhatCouldBeSeenByItsOwnSigma) {
   ExactCase c = tunnel_case();
-  const double seen = value(score_of(c), "volume.observable_m3");
+  const Score bare = score_of(c);
+  const double seen = value(bare, "volume.observable_m3") + value(bare, "volume.unseen_void_m3");
   c.estimate.volume_sigma_m3 = 2;
   for (const auto& [off_m3, holds] : std::vector<std::pair<double, double>>{{-2, 1}, {3.9, 1}, {4, 0}, {-20, 0}}) {
     c.estimate.volume_m3 = seen + off_m3;
@@ -164,6 +165,19 @@ TEST(Worked, AClaimIsHeldAgainstWhatCouldBeSeenByItsOwnSigma) {
     EXPECT_EQ(value(s, "volume.claim_holds_95"), holds) << off_m3;
     EXPECT_NEAR(value(s, "volume.sigma_percent"), 200 / (seen + off_m3), 1e-9);
   }
+}
+
+TEST(Worked, VoidThatAMapClaimsBeyondWhatWasSeenIsNoErrorOfItsClaim) {
+  ExactCase c = tunnel_case();
+  const double claimed_m3 = enclosed_volume(c.estimate.surface);
+  c.estimate.volume_m3 = claimed_m3;
+  c.estimate.volume_sigma_m3 = 1;
+  const Score s = score_of(c);
+  const double seen = value(s, "volume.observable_m3"), unseen = value(s, "volume.unseen_void_m3");
+  EXPECT_GT(unseen, 0);
+  // Columns of 0.1 m on the faces of the tunnel.
+  EXPECT_NEAR(value(s, "volume.claim_sigmas"), claimed_m3 - seen - unseen, 1e-6);
+  EXPECT_NEAR(seen + unseen, claimed_m3, 0.01 * claimed_m3);
 }
 
 TEST(Worked, PassagesShareTheVolumeAmongThem) {

@@ -87,6 +87,12 @@ TEST(LeastSquares, SolvesAnOverdeterminedSystemAndNamesASingularOne) {
   const SparseSolution solution = solve_least_squares(rows);
   EXPECT_NEAR(solution.x[0], 2, 1e-12);
   EXPECT_NEAR(solution.x[1], 3, 1e-12);
+  EXPECT_EQ(solution.covariance.size(), 0);
+  // Inverse of [5 10; 10 30].
+  const Eigen::MatrixXd covariance = solve_least_squares(rows, {1, 0}).covariance;
+  EXPECT_NEAR(covariance(0, 0), 0.1, 1e-12);
+  EXPECT_NEAR(covariance(1, 1), 0.6, 1e-12);
+  EXPECT_NEAR(covariance(0, 1), -0.2, 1e-12);
   rows.unknowns = 3;
   EXPECT_THROW(solve_least_squares(rows), Error);
 }
