@@ -4,20 +4,19 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/parallel.h"
+#include "cli/cell_keys.h"
+#include "cli/peak_memory.h"
 #include "cli/stages.h"
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <list>
 #include <map>
 #include <memory>
@@ -31,39 +30,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a setting that may name a file refers to: its text, empty for a bundled name or a file that is not there.
-std::string text_behind(const std::string& name) {
-  std::error_code failed;
-  return name.find_first_of("/.") != std::string::npos && fs::is_regular_file(name, failed) ? read_text(name) : "";
-}
-
-// A scenario without what no score depends on.
-Scenario bare(Scenario s) {
-  s.name = s.about = "";
-  s.report = {};
-  return s;
-}
-
-std::string world_key(const Scenario& s) {
-  Scenario only;
-  only.world = s.world, only.seed = s.seed;
-  return digest(resolved_toml(only) + text_behind(s.world.plan));
-}
-std::string drive_key(const Scenario& s) {
-  Scenario only;
-  only.world = s.world, only.seed = s.seed, only.route = s.route, only.drive = s.drive, only.vehicle = s.vehicle;
-  return digest(resolved_toml(only) + text_behind(s.world.plan) + text_behind(s.vehicle) +
-                text_behind(s.drive.commands));
-}
-std::string recording_key(const Scenario& s) {
-  Scenario only = bare(s);
-  only.map = {}, only.external = {}, only.score = {};
-  return digest(resolved_toml(only) + text_behind(s.sensors.rig) + drive_key(s));
-}
-
 struct Job {
   Scenario scenario;
-  std::string name, world, drive, recording;
+  CellKeys key;
 };
 
 // Something that several cells need: made once, by the first that comes.
@@ -78,13 +47,6 @@ struct Shared {
 struct Failure {
   std::string why;
 };
-
-double gib_of(const char* file, const std::string& key) {
-  std::ifstream lines(file);
-  for (std::string line; std::getline(lines, line);)
-    if (line.starts_with(key + ":")) return std::stod(line.substr(key.size() + 1)) / (1024.0 * 1024.0);
-  return 0;
-}
 
 // Error texts of a failure that belongs to one cell; what belongs to the machine goes on.
 template <class Work>
@@ -132,9 +94,9 @@ class Kitchen {
   Kitchen(std::list<Job> pending, const CellsSettings& settings, const Progress& progress)
       : pending_(std::move(pending)), settings_(settings), progress_(progress), all_(pending_.size()) {
     for (const Job& job : pending_) {
-      ++worlds_[job.world].left;
-      ++drives_[job.drive].left;
-      ++recordings_[job.recording].left;
+      ++worlds_[job.key.world].left;
+      ++drives_[job.key.drive].left;
+      ++recordings_[job.key.recording].left;
     }
   }
 
@@ -168,15 +130,15 @@ class Kitchen {
   std::map<std::string, Shared<Drive>> drives_;
   std::map<std::string, Shared<Recording>> recordings_;
   std::mutex h5_;  // HDF5 is for one thread
+  PeakShares peaks_;
 
   bool ready(const Job& job) {
-    return !worlds_[job.world].making && !drives_[job.drive].making && !recordings_[job.recording].making;
+    return !worlds_[job.key.world].making && !drives_[job.key.drive].making && !recordings_[job.key.recording].making;
   }
 
   // By what the cells before it took.
   bool memory_left() const {
-    return running_ == 0 ||
-           gib_of("/proc/meminfo", "MemAvailable") > gib_of("/proc/self/status", "VmHWM") / static_cast<double>(most_);
+    return running_ == 0 || available_gib() > peaks_.highest_gib() / static_cast<double>(most_);
   }
 
   std::optional<Job> next() {
@@ -193,7 +155,7 @@ class Kitchen {
       Job job = std::move(*at);
       pending_.erase(at);
       const auto mark = [](auto& shared) { shared.making = !shared.made; };
-      mark(worlds_[job.world]), mark(drives_[job.drive]), mark(recordings_[job.recording]);
+      mark(worlds_[job.key.world]), mark(drives_[job.key.drive]), mark(recordings_[job.key.recording]);
       most_ = std::max(most_, ++running_);
       return job;
     }
@@ -207,7 +169,7 @@ class Kitchen {
       else
         all[key].making = false;
     };
-    drop(worlds_, job.world), drop(drives_, job.drive), drop(recordings_, job.recording);
+    drop(worlds_, job.key.world), drop(drives_, job.key.drive), drop(recordings_, job.key.recording);
     --running_;
     progress_("cells", static_cast<double>(++done_), static_cast<double>(all_));
     changed_.notify_all();
@@ -236,13 +198,13 @@ class Kitchen {
   Score score_of(const Job& job, const std::string& at) {
     const Scenario& s = job.scenario;
     const auto seed = static_cast<std::uint64_t>(s.seed);
-    const auto world = had(worlds_, job.world, [&] { return sound_world(s); });
-    const auto drive = had(drives_, job.drive, [&] {
+    const auto world = had(worlds_, job.key.world, [&] { return sound_world(s); });
+    const auto drive = had(drives_, job.key.drive, [&] {
       Drive d = adit::drive(*world, plan_route(*world, s.route, seed), load_vehicle(s.vehicle), s.drive, seed);
       if (d.end != DriveEnd::finished) throw Failure{"drive " + drive_end_name(d.end) + ": " + d.cause};
       return d;
     });
-    const auto recording = had(recordings_, job.recording, [&] {
+    const auto recording = had(recordings_, job.key.recording, [&] {
       return record(*world, *drive, load_rig(s.sensors), load_vehicle(s.vehicle).hull, s.sensors, seed);
     });
     if (settings_.keep_recording) {
@@ -265,8 +227,9 @@ class Kitchen {
   }
 
   void finish(const Job& job) {
-    const std::string at = temporary(settings_.dir, job.name);
+    const std::string at = temporary(settings_.dir, job.key.cell);
     const auto began = std::chrono::steady_clock::now();
+    const PeakShares::Share memory(peaks_);
     fs::remove_all(at);
     write_text(at + "/scenario.toml", resolved_toml(job.scenario));
     try {
@@ -278,13 +241,14 @@ class Kitchen {
         ++failed_;
       }
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-      write_text(at + "/timing.json", nlohmann::ordered_json{{"seconds", seconds}}.dump() + "\n");
+      write_text(at + "/timing.json",
+                 nlohmann::ordered_json{{"seconds", seconds}, {"peak_gib", memory.peak_gib()}}.dump() + "\n");
     } catch (...) {
       std::error_code ignored;
       fs::remove_all(at, ignored);
       throw;
     }
-    publish(at, settings_.dir + "/" + job.name);
+    publish(at, settings_.dir + "/" + job.key.cell);
   }
 
   // Where another process was faster its cell stays: it holds the same bytes.
@@ -300,21 +264,6 @@ class Kitchen {
 
 }  // namespace
 
-// FNV-1a, its bits mixed at the end.
-std::string digest(const std::string& text) {
-  std::uint64_t h = 0xcbf29ce484222325;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9;
-  h = (h ^ (h >> 27)) * 0x94d049bb133111eb;
-  char hex[17];
-  std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(h ^ (h >> 31)));
-  return hex;
-}
-
-std::string cell_name(const Scenario& scenario) {
-  return digest(resolved_toml(bare(scenario)) + recording_key(scenario));
-}
-
 CellsRun run_cells(const std::vector<Scenario>& scenarios, const CellsSettings& settings, const Progress& progress) {
   if (settings.shards < 1 || settings.shard < 1 || settings.shard > settings.shards)
     throw Error("shard " + std::to_string(settings.shard) + "/" + std::to_string(settings.shards) +
@@ -322,11 +271,11 @@ CellsRun run_cells(const std::vector<Scenario>& scenarios, const CellsSettings& 
   std::vector<Job> jobs;
   std::set<std::string> seen;
   for (const Scenario& s : scenarios) {
-    Job job{bare(s), cell_name(s), world_key(s), drive_key(s), recording_key(s)};
+    Job job{bare(s), keys_of(s)};
     job.scenario.name = "cell";  // the same for all, since they share what bears it
-    if (seen.insert(job.name).second) jobs.push_back(std::move(job));
+    if (seen.insert(job.key.cell).second) jobs.push_back(std::move(job));
   }
-  const auto order = [](const Job& j) { return std::tie(j.world, j.drive, j.recording, j.name); };
+  const auto order = [](const Job& j) { return std::tie(j.key.world, j.key.drive, j.key.recording, j.key.cell); };
   std::sort(jobs.begin(), jobs.end(), [&](const Job& a, const Job& b) { return order(a) < order(b); });
   const auto part = [&](int n) { return jobs.size() * static_cast<size_t>(n) / static_cast<size_t>(settings.shards); };
   std::error_code failed;
@@ -337,7 +286,7 @@ CellsRun run_cells(const std::vector<Scenario>& scenarios, const CellsSettings& 
   std::list<Job> pending;
   for (size_t i = part(settings.shard - 1); i < part(settings.shard); ++i) {
     ++run.asked;
-    const std::string at = settings.dir + "/" + jobs[i].name;
+    const std::string at = settings.dir + "/" + jobs[i].key.cell;
     if (!fs::exists(at)) {
       pending.push_back(std::move(jobs[i]));
       continue;
@@ -365,7 +314,8 @@ std::optional<Cell> load_cell(const std::string& dir, const std::string& name) {
   } else {
     cell.score = read_score(at + "/score.json");
   }
-  cell.seconds = nlohmann::json::parse(read_text(at + "/timing.json")).value("seconds", 0.0);
+  const nlohmann::json timing = nlohmann::json::parse(read_text(at + "/timing.json"));
+  cell.seconds = timing.value("seconds", 0.0), cell.peak_gib = timing.value("peak_gib", 0.0);
   return cell;
 }
 

@@ -46,7 +46,8 @@ CellsRun run_cells(const std::vector<Scenario>& scenarios, const CellsSettings& 
 struct Cell {
   std::string name, failure;  // empty: it has a score
   std::optional<Score> score;
-  double seconds = 0;  // of its own; what cells share is counted where it was made
+  double seconds = 0;   // of its own; what cells share is counted where it was made
+  double peak_gib = 0;  // of the whole process while it was made, whatever ran beside it; 0: an older adit made it
 };
 /// A cell of DIR; none where it is not made yet.
 std::optional<Cell> load_cell(const std::string& dir, const std::string& name);

@@ -108,6 +108,7 @@ NightCell night_cell(const SuiteCell& c, const std::string& dir, const SuiteRule
   const std::optional<Cell> cell = load_cell(dir, cell_name(c.run));
   ADIT_CHECK(cell.has_value());
   NightCell out{c.scenario, c.method, c.run.seed, "", cell->failure, page, cell->seconds, {}};
+  if (cell->peak_gib > 0) out.peak_gib = cell->peak_gib;
   if (!cell->score) return out;
   out.truth = meta_of(*cell->score, "truth_hash") + "/" + meta_of(*cell->score, "path_hash");
   for (const SuiteMetric& m : rules.metric)

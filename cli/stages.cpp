@@ -6,6 +6,7 @@
 #include "base/parts.h"
 #include "base/relay.h"
 #include "base/world_writer.h"
+#include "cli/peak_memory.h"
 #include "eval/mine_views.h"
 #include "eval/trouble.h"
 
@@ -20,18 +21,6 @@ namespace adit {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Linux keeps the peak of the resident memory and starts it anew on request (proc(5), clear_refs).
-void restart_peak() {
-  std::ofstream("/proc/self/clear_refs") << "5";
-}
-
-double peak_gib() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) / (1024.0 * 1024.0);
-  return 0;
-}
 
 std::string with_unit(double value, const char* unit, int digits) {
   char text[48];

@@ -80,7 +80,7 @@ void add_placements(Plan& plan, const std::string& out, Console& console) {
   for (const DesignPoint& p : plan.point)
     for (size_t i = 0; i <= found.mounts.size(); ++i) {
       DesignPoint q = p;
-      q.level.push_back(i == 0 ? "rig as given" : std::to_string(i));
+      q.level.push_back(i == 0 ? "rig as given" : found.label[i - 1]);
       if (i > 0) q.mounts.insert(q.mounts.end(), found.mounts[i - 1].begin(), found.mounts[i - 1].end());
       crossed.push_back(std::move(q));
     }

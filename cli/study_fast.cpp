@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -67,6 +68,7 @@ Json written(const FastResult& r) {
           {"information", s.information},
           {"surface", s.surface},
           {"volume", s.volume},
+          {"hull", s.hull},
           {"sigma", std::vector<double>(s.sigma.data(), s.sigma.data() + 6)},
           {"left", std::vector<double>(s.left.data(), s.left.data() + 6)},
           {"blind_left", s.blind_left}};
@@ -76,7 +78,7 @@ FastResult read_fast(const Json& j) {
   if (j.contains("failure")) return {{}, j["failure"]};
   FastScore s;
   s.value = j.at("value"), s.information = j.at("information"), s.surface = j.at("surface");
-  s.volume = j.at("volume"), s.blind_left = j.at("blind_left");
+  s.volume = j.at("volume"), s.blind_left = j.at("blind_left"), s.hull = j.at("hull");
   for (size_t k = 0; k < 6; ++k) {
     s.sigma[static_cast<Eigen::Index>(k)] = j.at("sigma").at(k);
     s.left[static_cast<Eigen::Index>(k)] = j.at("left").at(k);
@@ -115,6 +117,16 @@ std::string change_of(const MountText& m) {
          " y_m=" + short_number(m.position_m[1]) + " z_m=" + short_number(m.position_m[2]) +
          " yaw_deg=" + short_number(m.yaw_deg) + " pitch_deg=" + short_number(m.pitch_deg) +
          " roll_deg=" + short_number(m.roll_deg);
+}
+
+// "up (-0.20, 0.00, 0.55)": which way a laser looks, and where its mirror is in B.
+std::string place_of(const Mount& mount) {
+  constexpr std::array<const char*, 5> names{"level", "ahead on edge", "up", "down", "askew"};  // in the order of View
+  const Vec3& p = mount.X_BS.translation();
+  char text[96];
+  std::snprintf(text, sizeof text, "%s (%.2f, %.2f, %.2f)", names[static_cast<size_t>(view_of(mount))], p.x(), p.y(),
+                p.z());
+  return text;
 }
 
 // The lasers of the scenario's rig that stay, and the changes that take the others out.
@@ -195,7 +207,8 @@ Placements find_placements(const Study& study, const Scenario& s, const std::str
   asked.price_max = study.price_max, asked.mass_max_kg = study.mass_max_kg, asked.clearance_m = study.clearance_m;
   const std::string made_by = to_toml(asked), file = dir + "/placements-" + cell_name(geometry_of(s)) + ".json";
   if (const auto there = kept(file, made_by))
-    return {there->at("mounts").get<std::vector<std::vector<std::string>>>(), there->at("words")};
+    return {there->at("mounts").get<std::vector<std::vector<std::string>>>(),
+            there->at("labels").get<std::vector<std::string>>(), there->at("words")};
 
   const FastCourse course(s, study.fast);
   const std::vector<Candidate> candidates = candidates_of(study, course.hull());
@@ -226,8 +239,13 @@ Placements find_placements(const Study& study, const Scenario& s, const std::str
   Placements placements;
   for (const size_t rank : taken) {
     std::vector<std::string> changes = off;
-    for (const size_t c : found.scored[rank].candidate) changes.push_back(change_of(candidates[c].mount));
+    std::string label;
+    for (const size_t c : found.scored[rank].candidate) {
+      changes.push_back(change_of(candidates[c].mount));
+      label += (label.empty() ? "" : ", ") + place_of(rig.mounts[c]);
+    }
     placements.mounts.push_back(std::move(changes));
+    placements.label.push_back(label);
   }
   placements.words =
       std::to_string(candidates.size()) + " candidate mounts; " + std::to_string(found.looked_at) +
@@ -235,8 +253,9 @@ Placements find_placements(const Study& study, const Scenario& s, const std::str
       std::to_string(study.mounts.count) + " lasers, by greed and exchange; " +
       (found.guarantee
            ? "nothing but their number limited the choice, so that greed alone is within 1 - 1/e of the best"
-           : "limits beside their number took part, so that no bound on the best is claimed");
-  keep(file, made_by, {{"mounts", placements.mounts}, {"words", placements.words}});
+           : "their number alone did not decide (limits took part, or one laser of a view counts), so that no bound on "
+             "the best is claimed");
+  keep(file, made_by, {{"mounts", placements.mounts}, {"labels", placements.label}, {"words", placements.words}});
   return placements;
 }
 

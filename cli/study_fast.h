@@ -39,7 +39,8 @@ std::vector<FastResult> fast_scores(const std::vector<Scenario>& scenarios, cons
 /// Placements that go on to full runs, as changes of the rig (sensors.mounts), best first, and what was looked at.
 struct Placements {
   std::vector<std::vector<std::string>> mounts;
-  std::string words;  // how they were found
+  std::vector<std::string> label;  // where each one's lasers are, in words
+  std::string words;               // how they were found
 };
 /// Kept in DIR too. DIR/placements.csv lists every set of the full number that was scored.
 Placements find_placements(const Study& study, const Scenario& scenario, const std::string& dir,

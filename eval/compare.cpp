@@ -187,9 +187,13 @@ std::vector<double> all_sums(const std::vector<double>& values) {
 
 std::vector<double> drawn_sums(const std::vector<double>& values) {
   std::vector<double> sums(drawn_patterns, 0.0);
-  for (std::uint64_t k = 0; k < sums.size(); ++k)
-    for (size_t i = 0; i < values.size(); ++i)
-      sums[k] += random_bits(1, Draw::bootstrap, k, i / 64) >> (i % 64) & 1 ? values[i] : -values[i];
+  for (std::uint64_t k = 0; k < sums.size(); ++k) {
+    std::uint64_t signs = 0;
+    for (size_t i = 0; i < values.size(); ++i, signs >>= 1U) {
+      if (i % 64 == 0) signs = random_bits(1, Draw::bootstrap, k, i / 64);
+      sums[k] += signs & 1U ? values[i] : -values[i];
+    }
+  }
   return sums;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/files.h"
 #include "eval/compare.h"
+#include "eval/spread_json.h"
 
 #include <nlohmann/json.hpp>
 
@@ -12,14 +13,6 @@ namespace adit {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json written(const Spread& s) {
-  return {{"n", s.n}, {"median", number(s.median)}, {"low", number(s.low)}, {"high", number(s.high)}};
-}
 
 std::string short_number(double value) {
   char text[32];
@@ -81,13 +74,13 @@ void write_comparison(const std::string& file, const Comparison& c) {
   for (const ComparedMetric& m : c.metric) {
     Json groups = Json::array();
     for (size_t g = 0; g < m.group.size(); ++g) {
-      Json one = written(m.group[g].value);
-      one["mean"] = number(m.group[g].mean);
+      Json one = json_of<Json>(m.group[g].value);
+      one["mean"] = json_of<Json>(m.group[g].mean);
       one["missing"] = m.group[g].missing;
       one["worst_seed"] = m.group[g].worst_seed ? Json(*m.group[g].worst_seed) : Json(nullptr);
       if (g > 0) {
-        one["difference"] = written(m.group[g].difference);
-        one["effect"] = number(m.group[g].effect);
+        one["difference"] = json_of<Json>(m.group[g].difference);
+        one["effect"] = json_of<Json>(m.group[g].effect);
         one["p"] = m.group[g].p;
         one["p_holm"] = m.group[g].p_holm ? Json(*m.group[g].p_holm) : Json(nullptr);
         one["verdict"] = m.group[g].verdict;

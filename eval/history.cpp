@@ -10,8 +10,12 @@
 namespace adit {
 namespace {
 
-constexpr std::int64_t schema = 1;
+constexpr std::int64_t schema = 2;
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t application = 0x61646974;  // "adit"
+
+// Of schema 1, which knew no memory.
+const char* const from_1 = "ALTER TABLE cell ADD COLUMN peak_gib REAL";
 
 const char* const tables = R"sql(
 CREATE TABLE night (id INTEGER PRIMARY KEY, suite TEXT NOT NULL, branch TEXT NOT NULL, commit_id TEXT NOT NULL,
@@ -19,7 +23,7 @@ CREATE TABLE night (id INTEGER PRIMARY KEY, suite TEXT NOT NULL, branch TEXT NOT
   verdict TEXT NOT NULL, accepted TEXT NOT NULL);
 CREATE TABLE cell (id INTEGER PRIMARY KEY, night INTEGER NOT NULL REFERENCES night, scenario TEXT NOT NULL,
   method TEXT NOT NULL, seed INTEGER NOT NULL, truth TEXT NOT NULL, failure TEXT NOT NULL, run TEXT NOT NULL,
-  seconds REAL);
+  seconds REAL, peak_gib REAL);
 CREATE TABLE metric (id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE);
 CREATE TABLE value (cell INTEGER NOT NULL REFERENCES cell, metric INTEGER NOT NULL REFERENCES metric,
   value REAL NOT NULL, PRIMARY KEY (cell, metric)) WITHOUT ROWID;
@@ -72,11 +76,14 @@ struct History::Impl {
 
   void make_tables() {
     Transaction all(base);
-    if (pragma(base, "user_version") == 0) {  // else another process was faster
+    const std::int64_t version = pragma(base, "user_version");  // another process may have been faster
+    if (version == 0) {
       base.exec(tables);
       base.exec("PRAGMA application_id = " + std::to_string(application));
-      base.exec("PRAGMA user_version = " + std::to_string(schema));
+    } else if (version == 1) {
+      base.exec(from_1);
     }
+    base.exec("PRAGMA user_version = " + std::to_string(schema));
     all.commit();
   }
 
@@ -89,14 +96,14 @@ struct History::Impl {
 
   void add_cells(const Night& night, std::int64_t id) {
     SqliteStatement cell = base.prepare(
-        "INSERT INTO cell (night, scenario, method, seed, truth, failure, run, seconds) VALUES (?, ?, ?, ?, ?, ?, ?, "
-        "?)");
+        "INSERT INTO cell (night, scenario, method, seed, truth, failure, run, seconds, peak_gib) VALUES (?, ?, ?, ?, "
+        "?, ?, ?, ?, ?)");
     SqliteStatement metric = base.prepare("INSERT INTO metric (name) VALUES (?)"),
                     value = base.prepare("INSERT INTO value VALUES (?, ?, ?)");
     std::map<std::string, std::int64_t> ids = metric_ids();
     for (const NightCell& c : night.cells) {
       cell.bind(0, id).bind(1, c.scenario).bind(2, c.method).bind(3, std::int64_t{c.seed}).bind(4, c.truth);
-      cell.bind(5, c.failure).bind(6, c.run).bind(7, c.seconds).step();
+      cell.bind(5, c.failure).bind(6, c.run).bind(7, c.seconds).bind(8, c.peak_gib).step();
       const std::int64_t cell_id = last_id();
       for (const auto& [name, number] : c.value) {
         if (!ids.contains(name)) {
@@ -112,7 +119,8 @@ struct History::Impl {
     std::map<std::int64_t, std::string> names;
     for (const auto& [name, id] : metric_ids()) names[id] = name;
     SqliteStatement row = base.prepare(
-        "SELECT cell.id, night, scenario, method, seed, truth, failure, run, seconds FROM cell JOIN night ON night = "
+        "SELECT cell.id, night, scenario, method, seed, truth, failure, run, seconds, peak_gib FROM cell JOIN night ON "
+        "night = "
         "night.id WHERE suite = ? ORDER BY cell.id");
     std::map<std::int64_t, std::pair<Night*, size_t>> cells;
     row.bind(0, suite);
@@ -126,8 +134,9 @@ struct History::Impl {
                                       row.text(5),
                                       row.text(6),
                                       row.text(7),
-                                      row.number(8).value_or(std::numeric_limits<double>::quiet_NaN()),
-                                      {}});
+                                      row.number(8).value_or(none),
+                                      {},
+                                      row.number(9).value_or(none)});
     }
     SqliteStatement value = base.prepare(
         "SELECT cell, metric, value FROM value JOIN cell ON cell = cell.id JOIN night ON night = night.id WHERE suite "
@@ -157,7 +166,7 @@ History::History(const std::string& file, int wait_ms) {
   }
   if (!empty && pragma(base, "application_id") != application)
     throw Error(file + ": is a database, but not a history of adit; name another file with --history", Fault::file);
-  if (version == 0) impl_->make_tables();
+  if (version < schema) impl_->make_tables();
 }
 
 History::~History() = default;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,6 +19,8 @@ struct NightCell {
   std::string run;                      // folder of what is kept of it; empty: nothing
   double seconds = 0;                   // that it took; NaN: not known
   std::map<std::string, double> value;  // of the suite's metrics; what could not be had is missing
+  double peak_gib =
+      std::numeric_limits<double>::quiet_NaN();  // the most that the process held meanwhile; NaN: not known
 };
 
 /// Something that a verdict says of a metric of a night.
@@ -32,7 +35,7 @@ struct Night {
   std::int64_t id = 0;                         // rising in a history; 0: not in one yet
   std::string suite, branch, commit, version;  // of adit or of whatever is tested
   std::string evaluator;                       // numbers of two evaluators are not comparable
-  std::string machine, compiler;               // times of two machines are not comparable
+  std::string machine, compiler;               // times and memory of two machines are not comparable
   std::string date;                            // of the night, for people: "2026-03-01 02:00"
   std::string verdict;                         // "first", "pass", "improved", "regressed", "not comparable"
   std::string accepted;                        // why what it shows is the new baseline; empty: it is not

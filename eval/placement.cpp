@@ -49,7 +49,7 @@ class Searcher {
     }
     Search found;
     found.looked_at = seen_.size();
-    found.guarantee = !limited_;
+    found.guarantee = !limited_ && course_.every_laser_counts();
     for (const auto& [set, score] : seen_)
       if (set.size() == k_) found.scored.push_back({set, score});
     std::stable_sort(found.scored.begin(), found.scored.end(),

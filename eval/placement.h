@@ -35,8 +35,9 @@ struct Placement {
 
 struct Search {
   std::vector<Placement> scored;  // every set of the full number that was looked at, best first; ties by number
-  bool guarantee = false;         // the greedy one is within 1 - 1/e of the best: no budget and no clearance took part
-  size_t looked_at = 0;           // sets of any number
+  bool guarantee = false;  // the greedy one is within 1 - 1/e of the best: every laser counts, and no budget and no
+                           // clearance took part
+  size_t looked_at = 0;    // sets of any number
 };
 
 /// The k candidates that see best beside lasers that are there in any case: greedily one by one, then by exchanges of

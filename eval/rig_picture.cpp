@@ -13,6 +13,7 @@ namespace adit {
 namespace {
 
 constexpr int width_px = 1600, height_px = 1000;
+constexpr double legend_px = 800;
 
 // Apart for the colour-blind too: Okabe and Ito's palette.
 Colour laser_colour(size_t i) {
@@ -87,6 +88,9 @@ Picture rig_picture(const RigExhibit& x, RigView view) {
   drawing.add(Layer{scene, {0, 0}, {width_px, height_px}});
   double y = 56;
   const Colour ink = rgb(0x222222);
+  // A ground of its own: the words would lie on the passage's walls.
+  const double low = 70 + 34 * static_cast<double>(x.rig.mounts.size()), right = 20 + legend_px;
+  drawing.add(Area{{{{20, 16}, {right, 16}, {right, low}, {20, low}}}, {255, 255, 255, 225}});
   drawing.add(Words{{40, y}, "rig " + x.rig.name, {.size_px = 30, .colour = ink, .bold = true, .halo_px = 2}});
   for (size_t i = 0; i < x.rig.mounts.size(); ++i) {
     y += 34;

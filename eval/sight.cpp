@@ -91,11 +91,16 @@ Fields fields(FastSettings& s) {
           {"sector_deg", &s.sector_deg, "of the section about the path: the patches of rock that are counted", 1, 90},
           {"section_max_m", &s.section_max_m, "rock farther from the path does not count", 1, 100},
           {"slope", &s.slope, "of rock against the body's axes, below which it is roughness", 0, 0.7},
+          {"again_m", &s.again_m, "rock this near to the fan at the next station is seen again", 0, 100},
+          {"unknown_m", &s.unknown_m, "deviation of rock that is not seen again; 0: all rock is known", 0, 100},
+          {"one_a_view", &s.one_a_view, "of each view the first laser counts, as for adit's mapper"},
           {"prior_m", &s.prior_m, "deviation of a pose before a scan", 1e-3, 1e3},
           {"prior_deg", &s.prior_deg, "and of its angles", 1e-3, 90},
           {"information", &s.information, "weight of what scans tell of the pose", 0, 1e6},
           {"surface", &s.surface, "weight of the rock that is met", 0, 1e6},
-          {"volume", &s.volume, "weight of the void before it", 0, 1e6}};
+          {"volume", &s.volume, "weight of the void before it", 0, 1e6},
+          {"hull", &s.hull, "what a laser costs all of whose beams end on the vehicle: a mapper takes it for rock", 0,
+           1e6}};
 }
 
 std::string blind_words(const FastScore& score) {
@@ -239,12 +244,35 @@ Vec3 Course::normal_W(std::int32_t face, std::int64_t patch) const {
   return caster_.mesh().normal(f);
 }
 
+// From the station before or the next one.
+bool Course::seen_again(const Mount& mount, size_t station, const Vec3& p_W) const {
+  const auto from = [&](size_t s) {
+    const Vec3 p_S = (X_WB_[s] * mount.X_BS).inverse() * p_W;
+    return std::abs(p_S.z()) <= settings_.again_m && p_S.norm() <= mount.laser.range_max_m &&
+           std::abs(std::atan2(p_S.y(), p_S.x())) <= mount.laser.fov_rad / 2;
+  };
+  return (station > 0 && from(station - 1)) || (station + 1 < stations() && from(station + 1));
+}
+
+// What a mapper uses: of each view the first.
+std::vector<const Sight*> Course::that_count(std::span<const Sight* const> lasers) const {
+  if (!settings_.one_a_view) return {lasers.begin(), lasers.end()};
+  std::vector<const Sight*> some;
+  for (const Sight* sight : lasers) {
+    const auto same = [&](const Sight* other) { return other->view == sight->view; };
+    if (sight->view != View::other && std::none_of(some.begin(), some.end(), same)) some.push_back(sight);
+  }
+  return some;
+}
+
 Sight Course::sight(const Mount& mount, const Hull& hull) const {
   double each_counts = 1;
   const std::vector<FixedBeam> beams = beams_of(mount, hull, settings_.beam_step_deg, each_counts);
   const Mesh& mesh = caster_.mesh();
-  const double sigma = std::max(1e-6, noise_m(mount.laser)), weight = each_counts / (sigma * sigma);
+  const double variance = std::pow(std::max(1e-6, noise_m(mount.laser)), 2), known = each_counts / variance,
+               unknown = each_counts / (variance + settings_.unknown_m * settings_.unknown_m);
   Sight sight;
+  sight.view = view_of(mount);
   sight.information.assign(stations(), Mat6::Zero());
   sight.seen.assign((stations() * sectors_ + 63) / 64, 0);
   RayColumns<float> rays;
@@ -263,10 +291,12 @@ Sight Course::sight(const Mount& mount, const Hull& hull) const {
     Mat6& I = sight.information[s];
     for (size_t k = 0; k < beams.size(); ++k) {
       const double range = static_cast<double>(hits.range_m[k]);
+      sight.blocked += std::isfinite(beams[k].free_m) && !(range <= beams[k].free_m);
       if (hits.face[k] < 0 || range > beams[k].free_m) continue;
       const Vec3& d = beams[k].along;
       if (!echoes(mount.laser, mesh, hits.face[k], range, static_cast<double>(hits.cosine[k]))) continue;
-      const std::int64_t patch = patch_of(from_W + range * (R_WB * d));
+      const Vec3 p_W = from_W + range * (R_WB * d);
+      const std::int64_t patch = patch_of(p_W);
       if (patch >= 0) mark(sight.seen, patch);
       const Vec3 n = main_directions(R_BW * normal_W(hits.face[k], patch), settings_.slope);
       const double cosine = n.dot(d);
@@ -275,14 +305,16 @@ Sight Course::sight(const Mount& mount, const Hull& hull) const {
       Vec6 g;
       g << n, p.cross(n);
       g /= cosine;
-      I.selfadjointView<Eigen::Lower>().rankUpdate(g, weight);
+      I.selfadjointView<Eigen::Lower>().rankUpdate(g, seen_again(mount, s, p_W) ? known : unknown);
     }
     I = Mat6(I.selfadjointView<Eigen::Lower>());
   }
+  sight.blocked /= static_cast<double>(beams.size() * stations());
   return sight;
 }
 
-FastScore Course::score(std::span<const Sight* const> lasers, bool with_directions) const {
+FastScore Course::score(std::span<const Sight* const> all, bool with_directions) const {
+  const std::vector<const Sight*> lasers = that_count(all);
   const Vec6 prior = prior_of(settings_);
   const Mat6 scale = prior.asDiagonal();
   FastScore score;
@@ -312,8 +344,11 @@ FastScore Course::score(std::span<const Sight* const> lasers, bool with_directio
     }
   }
   score.surface /= std::max(surface_all_, 1e-9), score.volume /= std::max(volume_all_, 1e-9);
-  score.value =
-      settings_.information * score.information + settings_.surface * score.surface + settings_.volume * score.volume;
+  if (settings_.one_a_view && std::none_of(lasers.begin(), lasers.end(), [](auto* l) { return l->view == View::up; }))
+    score.volume = 0;
+  for (const Sight* sight : all) score.hull += sight->blocked;
+  score.value = settings_.information * score.information + settings_.surface * score.surface +
+                settings_.volume * score.volume - settings_.hull * score.hull;
   if (!with_directions) return score;
   for (int k = 0; k < 6; ++k) {
     score.left[k] = quantile(deviation[static_cast<size_t>(k)], 0.5);

@@ -4,12 +4,11 @@
 #include "base/error.h"
 #include "base/rng.h"
 #include "eval/metric_list.h"
+#include "eval/study_effects.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <set>
 
@@ -144,92 +143,6 @@ void judge_points(const StudyTable& t, const std::vector<Source>& sources, const
   for (size_t p = 0; p < n; ++p) answer.point[p].front_share = static_cast<double>(times[p]) / front_samples;
 }
 
-constexpr size_t most_levels = 8;  // a factor of more numbers is taken in thirds
-
-// (points) The level of a factor by which effects are told: its own, or of many numbers the third that it lies in.
-std::vector<std::string> groups_of(const StudyTable& t, size_t factor) {
-  std::vector<std::string> groups;
-  std::vector<double> numbers;
-  for (const StudyPoint& p : t.point) groups.push_back(p.level[factor]);
-  for (const std::string& level : groups) {
-    char* end = nullptr;
-    numbers.push_back(std::strtod(level.c_str(), &end));
-    if (*end != '\0') return groups;
-  }
-  std::vector<double> sorted = numbers;
-  std::sort(sorted.begin(), sorted.end());
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-  if (sorted.size() <= most_levels) return groups;
-  const double low = quantile(sorted, 1.0 / 3), high = quantile(sorted, 2.0 / 3);
-  for (size_t p = 0; p < groups.size(); ++p)
-    groups[p] = numbers[p] < low ? "lower third" : numbers[p] < high ? "middle third" : "upper third";
-  return groups;
-}
-
-// One run's value with what is common to its seed taken off, and its point.
-struct Observed {
-  double value;
-  size_t point;
-};
-
-std::vector<Observed> observed(const StudyTable& t, const Source& s) {
-  std::map<int, std::pair<double, double>> of_seed;  // sum, count
-  for (const StudyCell& c : t.cell)
-    if (c.failure.empty() && std::isfinite(c.value[s.index]))
-      of_seed[c.seed].first += c.value[s.index], of_seed[c.seed].second += 1;
-  std::vector<Observed> all;
-  for (const StudyCell& c : t.cell)
-    if (c.failure.empty() && std::isfinite(c.value[s.index]))
-      all.push_back({c.value[s.index] - of_seed[c.seed].first / of_seed[c.seed].second, c.point});
-  return all;
-}
-
-// The sum of squares that the means of groups account for.
-template <class Key>
-double between(const std::vector<Observed>& all, const Key& key) {
-  std::map<std::string, std::pair<double, double>> group;
-  double sum = 0;
-  for (const Observed& o : all) {
-    auto& [total, n] = group[key(o)];
-    total += o.value, n += 1, sum += o.value;
-  }
-  double squares = 0;
-  const double mean = all.empty() ? 0 : sum / static_cast<double>(all.size());
-  for (const auto& [name, g] : group) squares += g.second * (g.first / g.second - mean) * (g.first / g.second - mean);
-  return squares;
-}
-
-void add_effects(const StudyTable& t, const Source& s, size_t objective, StudyAnswer& answer) {
-  const std::vector<Observed> all = observed(t, s);
-  double squares = 0;
-  for (const Observed& o : all) squares += o.value * o.value;  // their mean is 0
-  const auto share = [&](double part) { return squares > 0 ? part / squares : none; };
-  std::vector<double> own(t.factor.size());
-  std::vector<std::vector<std::string>> group;
-  for (size_t f = 0; f < t.factor.size(); ++f) {
-    group.push_back(groups_of(t, f));
-    own[f] = between(all, [&](const Observed& o) { return group[f][o.point]; });
-    StudyAnswer::Effect effect{f, objective, {}, share(own[f])};
-    std::vector<std::string> names;
-    for (const std::string& name : group[f])
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    for (const std::string& name : names) {
-      std::vector<double> values;
-      for (const StudyCell& c : t.cell)
-        if (c.failure.empty() && group[f][c.point] == name && std::isfinite(c.value[s.index]))
-          values.push_back(c.value[s.index]);
-      effect.level.push_back({name, spread_of(values)});
-    }
-    if (names.size() > 1) answer.effect.push_back(std::move(effect));
-  }
-  for (size_t a = 0; a < t.factor.size(); ++a)
-    for (size_t b = a + 1; b < t.factor.size(); ++b) {
-      const double both = between(all, [&](const Observed& o) { return group[a][o.point] + "\n" + group[b][o.point]; });
-      if (own[a] > 0 && own[b] > 0)
-        answer.interaction.push_back({a, b, objective, share(std::max(0.0, both - own[a] - own[b]))});
-    }
-}
-
 StudyAnswer::Agreement agreement_of(const StudyTable& t, size_t fast, const Source& s, const CellsOfPoint& cells) {
   const StudyColumn& column = fast_columns()[fast];
   std::vector<double> a, b;
@@ -294,13 +207,14 @@ const std::vector<StudyColumn>& fast_columns() {
                                                 {"fast.sigma_roll_deg", "deg", Better::lower},
                                                 {"fast.sigma_pitch_deg", "deg", Better::lower},
                                                 {"fast.sigma_yaw_deg", "deg", Better::lower},
-                                                {"fast.blind_left", "share", Better::lower}};
+                                                {"fast.blind_left", "share", Better::lower},
+                                                {"fast.hull", "share", Better::lower}};
   return columns;
 }
 
 std::vector<double> fast_values(const FastScore& s) {
-  return {s.value,    s.information, s.surface,  s.volume,   s.sigma[0],  s.sigma[1],
-          s.sigma[2], s.sigma[3],    s.sigma[4], s.sigma[5], s.blind_left};
+  return {s.value,    s.information, s.surface,  s.volume,   s.sigma[0],   s.sigma[1],
+          s.sigma[2], s.sigma[3],    s.sigma[4], s.sigma[5], s.blind_left, s.hull};
 }
 
 double spearman(const std::vector<double>& a, const std::vector<double>& b) {
@@ -332,7 +246,7 @@ StudyAnswer answer_of(const StudyTable& t) {
   judge_points(t, sources, cells, answer);
   for (size_t o = 0; o < sources.size(); ++o) {
     if (sources[o].kind != Source::metric) continue;
-    add_effects(t, sources[o], o, answer);
+    add_effects(t, sources[o].index, o, answer);
     for (size_t f = 0; f < fast_columns().size(); ++f)
       answer.agreement.push_back(agreement_of(t, f, sources[o], cells));
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/files.h"
 #include "base/sqlite.h"
+#include "eval/spread_json.h"
 #include "eval/study.h"
 
 #include <nlohmann/json.hpp>
@@ -15,14 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json written(const Spread& s) {
-  return {{"n", s.n}, {"median", number(s.median)}, {"low", number(s.low)}, {"high", number(s.high)}};
-}
-
 Json levels_of(const StudyTable& t, size_t p) {
   Json levels = Json::object();
   for (size_t f = 0; f < t.factor.size(); ++f) levels[t.factor[f]] = t.point[p].level[f];
@@ -32,8 +25,9 @@ Json levels_of(const StudyTable& t, size_t p) {
 Json point_of(const StudyTable& t, const StudyAnswer& a, size_t p) {
   const StudyAnswer::Point& point = a.point[p];
   Json j{{"levels", levels_of(t, p)}, {"price", t.point[p].price}, {"mass_kg", t.point[p].mass_kg}};
-  for (size_t f = 0; f < fast_columns().size(); ++f) j["fast"][fast_columns()[f].name] = number(t.point[p].fast[f]);
-  for (size_t o = 0; o < t.objective.size(); ++o) j["objectives"][t.objective[o]] = written(point.value[o]);
+  for (size_t f = 0; f < fast_columns().size(); ++f)
+    j["fast"][fast_columns()[f].name] = json_of<Json>(t.point[p].fast[f]);
+  for (size_t o = 0; o < t.objective.size(); ++o) j["objectives"][t.objective[o]] = json_of<Json>(point.value[o]);
   j["runs"] = point.runs, j["failed"] = point.failed;
   j["front"] = point.front, j["front_share"] = point.front_share, j["rank"] = point.rank;
   return j;
@@ -47,23 +41,23 @@ void write_json(const std::string& file, const StudyTable& t, const StudyAnswer&
   j["worst"] = a.worst ? Json(*a.worst) : Json(nullptr);
   for (const StudyAnswer::Effect& e : a.effect) {
     Json levels = Json::object();
-    for (const StudyAnswer::Level& l : e.level) levels[l.name] = written(l.value);
+    for (const StudyAnswer::Level& l : e.level) levels[l.name] = json_of<Json>(l.value);
     j["effects"].push_back({{"factor", t.factor[e.factor]},
                             {"objective", t.objective[e.objective]},
-                            {"variance_share", number(e.share)},
+                            {"variance_share", json_of<Json>(e.share)},
                             {"levels", levels}});
   }
   for (const StudyAnswer::Interaction& i : a.interaction)
     j["interactions"].push_back({{"factors", {t.factor[i.a], t.factor[i.b]}},
                                  {"objective", t.objective[i.objective]},
-                                 {"variance_share", number(i.share)}});
+                                 {"variance_share", json_of<Json>(i.share)}});
   for (const StudyAnswer::Agreement& g : a.agreement)
     j["fast_against_full"].push_back({{"fast", g.fast},
                                       {"metric", g.metric},
                                       {"n", g.n},
-                                      {"spearman", number(g.rho)},
-                                      {"low", number(g.low)},
-                                      {"high", number(g.high)}});
+                                      {"spearman", json_of<Json>(g.rho)},
+                                      {"low", json_of<Json>(g.low)},
+                                      {"high", json_of<Json>(g.high)}});
   j["failures"] = Json::array();
   for (const StudyCell& c : t.cell)
     if (!c.failure.empty())

@@ -4,129 +4,49 @@
 #include "base/files.h"
 #include "eval/drawing.h"
 #include "eval/page_style.h"
-#include "eval/ramp.h"
+#include "eval/study_charts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
 namespace adit {
 namespace {
 
-const Colour dark = rgb(0x1b1d22), faint = rgb(0x5b606b), rule = rgb(0xd9dce2), blue = rgb(0x0072b2),
-             orange = rgb(0xd55e00), grey = rgb(0x9aa0aa);
-
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", v);
-  return std::isfinite(v) ? text : "–";
-}
-
 std::string spread(const Spread& s) {
-  return number(s.median) + (std::isfinite(s.low) ? " [" + number(s.low) + ", " + number(s.high) + "]" : "");
+  return study_number(s.median) +
+         (std::isfinite(s.low) ? " [" + study_number(s.low) + ", " + study_number(s.high) + "]" : "");
 }
 
 std::string cell(const std::string& text, bool right = false) {
-  return (right ? "<td class=\"n\">" : "<td>") + escaped(text) + "</td>";
+  if (right) return "<td class=\"n\">" + escaped(text) + "</td>";
+  // Else a table of many columns breaks it after every word.
+  return "<td style=\"min-width:" + std::to_string(std::min<size_t>(text.size(), 28)) + "ch\">" + escaped(text) +
+         "</td>";
 }
-std::string head(const std::vector<std::string>& names) {
+// A column's head; those of numbers stand over them, at the right.
+struct Column {
+  std::string name;
+  bool number = false;
+};
+std::string head(const std::vector<Column>& columns) {
   std::string html = "<div class=\"scroll\"><table><thead><tr>";
-  for (const std::string& n : names) html += "<th scope=\"col\">" + escaped(n) + "</th>";
+  for (const Column& c : columns)
+    html +=
+        std::string(c.number ? "<th class=\"n\" style=\"white-space:normal\" scope=\"col\">" : "<th scope=\"col\">") +
+        escaped(c.name) + "</th>";
   return html + "</tr></thead><tbody>\n";
 }
 const char* const end_table = "</tbody></table></div>\n";
 
-std::string figure(const Drawing& drawing, const std::string& title, const std::string& caption) {
-  return "<figure><h3>" + escaped(title) + "</h3>\n" + to_svg(drawing, title) + "\n<figcaption>" + escaped(caption) +
-         "</figcaption></figure>\n";
-}
-
-// A range that holds the values with a margin.
-struct Range {
-  double low = 0, high = 1;
-  explicit Range(const std::vector<double>& values) {
-    bool any = false;
-    for (const double v : values) {
-      if (!std::isfinite(v)) continue;
-      low = any ? std::min(low, v) : v, high = any ? std::max(high, v) : v, any = true;
-    }
-    const double margin = high > low ? 0.08 * (high - low) : std::max(1e-6, 0.1 * std::abs(high));
-    low -= margin, high += margin;
-  }
-  double at(double v) const { return (v - low) / (high - low); }
-};
-
-// A chart of two quantities: where its frame lies and what its axes hold.
-struct Chart {
-  Drawing drawing;
-  Range x, y;
-  Vec2 corner{90, 30}, size{560, 330};
-
-  Chart(const std::vector<double>& xs, const std::vector<double>& ys, const std::string& x_words,
-        const std::string& y_words)
-      : x(xs), y(ys) {
-    drawing.width_px = 700, drawing.height_px = 430, drawing.background = rgb(0xffffff);
-    const Type type{.size_px = 15, .colour = faint, .anchor = Anchor::middle};
-    Type right = type, left = type;
-    right.anchor = Anchor::end, left.anchor = Anchor::start;
-    const double dx = round_down_125((x.high - x.low) / 4), dy = round_down_125((y.high - y.low) / 4);
-    for (double v = dx * std::ceil(x.low / dx); v <= x.high; v += dx) {
-      drawing.add(Line{{at(v, y.low), at(v, y.high)}, rule, 1});
-      drawing.add(Words{at(v, y.low) + Vec2(0, 22), number(v), type});
-    }
-    for (double v = dy * std::ceil(y.low / dy); v <= y.high; v += dy) {
-      drawing.add(Line{{at(x.low, v), at(x.high, v)}, rule, 1});
-      drawing.add(Words{at(x.low, v) + Vec2(-8, 5), number(v), right});
-    }
-    drawing.add(Words{{corner.x() + size.x(), corner.y() + size.y() + 46}, x_words, right});
-    drawing.add(Words{{corner.x() - 70, 20}, y_words, left});
-  }
-  Vec2 at(double vx, double vy) const { return corner + Vec2(x.at(vx) * size.x(), (1 - y.at(vy)) * size.y()); }
-};
-
-std::string objective_words(const StudyTable& t, size_t o) {
-  for (const StudyColumn& c : t.metric)
-    if (c.name == t.objective[o]) return c.name + (c.unit.empty() ? "" : ", " + c.unit);
-  return t.objective[o];
-}
-
-std::string front_chart(const StudyPage& p, size_t a, size_t b) {
-  std::vector<double> xs, ys;
-  for (const StudyAnswer::Point& point : p.answer.point) {
-    xs.insert(xs.end(), {point.value[a].median, point.value[a].low, point.value[a].high});
-    ys.insert(ys.end(), {point.value[b].median, point.value[b].low, point.value[b].high});
-  }
-  Chart chart(xs, ys, objective_words(p.table, a), objective_words(p.table, b));
-  for (const bool front : {false, true})
-    for (size_t i = 0; i < p.answer.point.size(); ++i) {
-      const StudyAnswer::Point& point = p.answer.point[i];
-      const Spread &x = point.value[a], &y = point.value[b];
-      if (point.front != front || !std::isfinite(x.median) || !std::isfinite(y.median)) continue;
-      const Colour colour = front ? orange : grey;
-      if (std::isfinite(x.low))
-        chart.drawing.add(Line{{chart.at(x.low, y.median), chart.at(x.high, y.median)}, colour, 1.5});
-      if (std::isfinite(y.low))
-        chart.drawing.add(Line{{chart.at(x.median, y.low), chart.at(x.median, y.high)}, colour, 1.5});
-      chart.drawing.add(Disc{.centre = chart.at(x.median, y.median),
-                             .radius_px = front ? 7.0 : 5.0,
-                             .fill = colour,
-                             .title = words_of(p.table, i)});
-      if (p.answer.point.size() <= 40)
-        chart.drawing.add(
-            Words{chart.at(x.median, y.median) + Vec2(9, -7), std::to_string(i + 1), {.size_px = 14, .colour = dark}});
-    }
-  return figure(chart.drawing, "What can be had together",
-                "Medians over the seeds with 95 % intervals (from five seeds on); orange: no other point is as good in "
-                "everything. Numbers are those of the table.");
-}
-
 std::string points_table(const StudyPage& p) {
   const StudyTable& t = p.table;
-  std::vector<std::string> names{"no."};
-  names.insert(names.end(), t.factor.begin(), t.factor.end());
-  for (size_t o = 0; o < t.objective.size(); ++o) names.push_back(objective_words(t, o));
-  names.insert(names.end(), {"failed", "on the front", "mean rank"});
-  std::string html = head(names);
+  std::vector<Column> columns{{"no."}};
+  for (const std::string& factor : t.factor) columns.push_back({factor});
+  for (size_t o = 0; o < t.objective.size(); ++o) columns.push_back({objective_words(t, o), true});
+  columns.insert(columns.end(), {{"failed", true}, {"on the front", true}, {"mean rank", true}});
+  std::string html = head(columns);
   std::vector<size_t> order(t.point.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(),
@@ -138,45 +58,55 @@ std::string points_table(const StudyPage& p) {
     for (const Spread& s : point.value) html += cell(spread(s), true);
     html +=
         cell(point.failed ? std::to_string(point.failed) + " of " + std::to_string(point.runs) : "0", true) +
-        cell(std::string(point.front ? "yes" : "no") + ", " + number(100 * point.front_share) + " % of samples", true) +
-        cell(number(point.rank), true) + "</tr>\n";
+        cell(std::string(point.front ? "yes" : "no") + ", " + study_number(100 * point.front_share) + " % of samples",
+             true) +
+        cell(study_number(point.rank), true) + "</tr>\n";
   }
   return html + end_table;
 }
 
+constexpr size_t most_levels_told = 12;
+
 std::string effects_table(const StudyPage& p) {
   if (p.answer.effect.empty()) return "<p>Nothing was varied, or nothing was run.</p>\n";
-  std::string html = head({"factor", "objective", "share of the variance", "levels: median [95 %]"});
+  std::string html = head({{"factor"}, {"objective"}, {"share of the variance", true}, {"levels: median [95 %]"}});
   for (const StudyAnswer::Effect& e : p.answer.effect) {
     std::string levels;
+    if (e.level.size() > most_levels_told)
+      levels = std::to_string(e.level.size()) + " levels: the table of points has them";
     for (const StudyAnswer::Level& l : e.level)
-      levels += (levels.empty() ? "" : "; ") + l.name + ": " + spread(l.value);
+      if (e.level.size() <= most_levels_told) levels += (levels.empty() ? "" : "; ") + l.name + ": " + spread(l.value);
     html += "<tr>" + cell(p.table.factor[e.factor]) + cell(p.table.objective[e.objective]) +
-            cell(number(100 * e.share) + " %", true) + cell(levels) + "</tr>\n";
+            cell(study_number(100 * e.share) + " %", true) + cell(levels) + "</tr>\n";
   }
   for (const StudyAnswer::Interaction& i : p.answer.interaction)
     html += "<tr>" + cell(p.table.factor[i.a] + " with " + p.table.factor[i.b]) + cell(p.table.objective[i.objective]) +
-            cell(number(100 * i.share) + " %", true) + cell("interaction: beyond what each does alone") + "</tr>\n";
+            cell(study_number(100 * i.share) + " %", true) + cell("interaction: beyond what each does alone") +
+            "</tr>\n";
   return html + end_table;
 }
 
 std::string differences_table(const StudyPage& p) {
   const Comparison& c = p.answer.comparison;
   if (c.group.size() < 2) return "";
-  std::string html = "<h3>Against the first point, seed by seed</h3>\n" +
-                     head({"point", "metric", "median difference [95 %]", "seeds", "p (Holm)", "verdict"});
+  std::string html = "<h3>Against the first point, seed by seed</h3>\n" + head({{"point"},
+                                                                                {"metric"},
+                                                                                {"median difference [95 %]", true},
+                                                                                {"seeds", true},
+                                                                                {"p (Holm)", true},
+                                                                                {"verdict"}});
   for (size_t g = 1; g < std::min<size_t>(c.group.size(), 40); ++g)
     for (const ComparedMetric& m : c.metric) {
       const ComparedMetric::Group& group = m.group[g];
       html += "<tr>" + cell(c.group[g].label) + cell(m.name + ", " + m.unit) + cell(spread(group.difference), true) +
-              cell(std::to_string(group.difference.n), true) + cell(number(group.p_holm.value_or(group.p)), true) +
-              cell(group.verdict) + "</tr>\n";
+              cell(std::to_string(group.difference.n), true) +
+              cell(study_number(group.p_holm.value_or(group.p)), true) + cell(group.verdict) + "</tr>\n";
     }
   return html + end_table;
 }
 
 std::string agreement_html(const StudyPage& p) {
-  std::string html = head({"fast", "metric", "points", "Spearman's rho [95 %]"});
+  std::string html = head({{"fast"}, {"metric"}, {"points", true}, {"Spearman's rho [95 %]", true}});
   std::vector<StudyAnswer::Agreement> all;
   for (const StudyAnswer::Agreement& a : p.answer.agreement)
     if (std::isfinite(a.rho)) all.push_back(a);
@@ -190,55 +120,9 @@ std::string agreement_html(const StudyPage& p) {
   return html + end_table;
 }
 
-// The scatter of the fast value against the first objective that is a metric.
-std::string agreement_chart(const StudyPage& p) {
-  const StudyTable& t = p.table;
-  const auto objective = std::find_if(t.objective.begin(), t.objective.end(), [&](const std::string& o) {
-    return std::any_of(t.metric.begin(), t.metric.end(), [&](const StudyColumn& c) { return c.name == o; });
-  });
-  if (objective == t.objective.end()) return "";
-  const auto o = static_cast<size_t>(objective - t.objective.begin());
-  std::vector<double> xs, ys;
-  for (size_t i = 0; i < t.point.size(); ++i) {
-    if (!std::isfinite(t.point[i].fast[0]) || !std::isfinite(p.answer.point[i].value[o].median)) continue;
-    xs.push_back(t.point[i].fast[0]), ys.push_back(p.answer.point[i].value[o].median);
-  }
-  if (xs.size() < 2) return "";
-  Chart chart(xs, ys, "fast value", objective_words(t, o));
-  for (size_t i = 0; i < xs.size(); ++i)
-    chart.drawing.add(Disc{.centre = chart.at(xs[i], ys[i]), .radius_px = 5, .fill = blue});
-  return figure(chart.drawing, "Geometry against the whole pipeline",
-                "Each dot is a point of the study, median over the seeds.");
-}
-
-// What is left of the prior's deviation in each direction, as bars: full = blind.
-std::string blind_chart(const StudyPage& p) {
-  Drawing d;
-  d.width_px = 700, d.background = rgb(0xffffff);
-  double y = 34;
-  const std::vector<std::string> unit{"m", "m", "m", "deg", "deg", "deg"},
-      names{"along", "across", "up", "roll", "pitch", "yaw"};
-  for (const RigWhy& w : p.why) {
-    if (!w.score) continue;
-    d.add(Words{{20, y}, w.title, {.size_px = 16, .colour = dark, .bold = true}});
-    for (Eigen::Index k = 0; k < 6; ++k) {
-      y += 24;
-      const double sigma = w.score->sigma[k], left = w.score->left[k];
-      const double length = 380 * std::clamp(1 + std::log10(std::max(1e-4, left)) / 4, 0.0, 1.0);
-      d.add(Words{{90, y + 5}, names[static_cast<size_t>(k)], {.size_px = 14, .colour = faint, .anchor = Anchor::end}});
-      d.add(Area{{{{100, y - 7}, {100 + length, y - 7}, {100 + length, y + 7}, {100, y + 7}}},
-                 left > 0.5 ? orange : blue});
-      d.add(Words{
-          {108 + length, y + 5}, number(sigma) + " " + unit[static_cast<size_t>(k)], {.size_px = 14, .colour = dark}});
-    }
-    y += 44;
-  }
-  d.height_px = y;
-  return y < 40 ? ""
-                : figure(d, "How well one round of scans fixes the pose",
-                         "Deviation that is left in each direction, median along the path, on a logarithmic scale from "
-                         "1e-4 of "
-                         "what is known beforehand to all of it (fast.prior_m, fast.prior_deg); orange: hardly seen.");
+std::string image(const RigWhy& why, size_t k) {
+  return "<img style=\"width:100%;border-radius:8px\" alt=\"" + escaped(why.title) + "\" src=\"data:image/png;base64," +
+         base64(encode_png(why.pictures[k].second)) + "\">";
 }
 
 std::string why_html(const StudyPage& p) {
@@ -246,15 +130,14 @@ std::string why_html(const StudyPage& p) {
   for (const RigWhy& w : p.why) {
     html += "<h3>" + escaped(w.title) + "</h3>\n";
     if (w.score)
-      html += "<p>It is least sure of <b>" + escaped(blind_words(*w.score)) +
-              "</b>: " + number(100 * w.score->blind_left) + " % of the prior's deviation is left there" +
+      html += "<p>At a usual place it is least sure of <b>" + escaped(blind_words(*w.score)) + "</b>; over the path " +
+              study_number(100 * w.score->blind_left) +
+              " % of the prior's deviation is left in the direction that it sees least" +
               (w.score->blind_left > 0.5 ? " – it is blind there" : "") + ". It meets " +
-              number(100 * w.score->surface) + " % of the rock about the path and sees " +
-              number(100 * w.score->volume) + " % of the void.</p>\n";
+              study_number(100 * w.score->surface) + " % of the rock about the path and sees " +
+              study_number(100 * w.score->volume) + " % of the void.</p>\n";
     html += "<div class=\"pair\">\n";
-    for (const auto& [name, picture] : w.pictures)
-      html += "<figure><img style=\"width:100%;border-radius:8px\" alt=\"" + escaped(w.title) +
-              "\" src=\"data:image/png;base64," + base64(encode_png(picture)) + "\"></figure>\n";
+    for (size_t k = 0; k < w.pictures.size(); ++k) html += "<figure>" + image(w, k) + "</figure>\n";
     html += "</div>\n";
   }
   return html + blind_chart(p);
@@ -262,15 +145,82 @@ std::string why_html(const StudyPage& p) {
 
 std::string verdict_of(const StudyPage& p) {
   const StudyAnswer& a = p.answer;
+  if (!a.best) return "Nothing could be judged.";
+  return "Best: " + words_of(p.table, *a.best) + ".";
+}
+
+std::string counts_of(const StudyPage& p) {
   size_t failed = 0;
   for (const StudyCell& c : p.table.cell) failed += !c.failure.empty();
   std::string text = std::to_string(p.table.point.size()) + " points, " + std::to_string(p.table.cell.size()) +
-                     " runs" + (failed ? ", " + std::to_string(failed) + " failed" : "") + ". ";
-  if (!a.best) return text + "Nothing could be judged.";
-  text += "Best: " + words_of(p.table, *a.best);
-  for (size_t o = 0; o < p.table.objective.size(); ++o)
-    text += (o ? ", " : " – ") + objective_words(p.table, o) + " " + spread(a.point[*a.best].value[o]);
-  return text + ". Worst: " + words_of(p.table, *a.worst) + ".";
+                     " runs" + (failed ? ", " + std::to_string(failed) + " failed" : "") + ".";
+  if (p.answer.best)
+    text += " The best point is on the front in " + study_number(100 * p.answer.point[*p.answer.best].front_share) +
+            " % of the samples of the seeds.";
+  return text;
+}
+
+// What the best rig sees that the worst does not, from the true geometry.
+std::string why_words(const FastScore& best, const FastScore& worst) {
+  constexpr std::array<const char*, 6> names{"along", "across", "up", "roll", "pitch", "yaw"};
+  std::vector<std::string> parts;
+  const auto share = [&](const char* what, double a, double b) {
+    if (std::abs(a - b) >= 0.02)
+      parts.push_back("it sees " + study_number(100 * a) + " % of the " + what + " about the path, not " +
+                      study_number(100 * b) + " %");
+  };
+  share("void", best.volume, worst.volume);
+  share("rock", best.surface, worst.surface);
+  Eigen::Index most = 0;
+  for (Eigen::Index k = 1; k < 6; ++k)
+    if (worst.left[k] / best.left[k] > worst.left[most] / best.left[most]) most = k;
+  const auto at = static_cast<size_t>(most);
+  const std::string unit = most < 3 ? " m" : " deg";
+  if (worst.left[most] > 2 * best.left[most])
+    parts.push_back("a round of its scans fixes " + std::string(names[at]) + " to " + study_number(best.sigma[most]) +
+                    unit + ", not to " + study_number(worst.sigma[most]) + unit +
+                    (worst.left[most] > 0.5 ? ", which is hardly seen at all" : ""));
+  if (worst.hull - best.hull >= 0.02)
+    parts.push_back(study_number(100 * best.hull) + " % of a laser's beams end on the vehicle, not " +
+                    study_number(100 * worst.hull) + " %");
+  if (parts.empty()) return "By geometry the two see much the same: the difference lies in what a mapper makes of it.";
+  std::string words = "Why the best is better than the worst: ";
+  for (size_t i = 0; i < parts.size(); ++i) words += (i ? "; " : "") + parts[i];
+  return words + ".";
+}
+
+// Best, second and worst beside each other: the answer in a glance.
+std::string answer_table(const StudyPage& p) {
+  const StudyAnswer& a = p.answer;
+  if (!a.best || a.best == a.worst) return "";
+  std::vector<std::pair<std::string, size_t>> rows{{"best", *a.best}};
+  std::optional<size_t> second;
+  for (size_t i = 0; i < a.point.size(); ++i)
+    if (i != *a.best && a.point[i].failed < std::max<size_t>(1, a.point[i].runs) &&
+        (!second || a.point[i].rank < a.point[*second].rank))
+      second = i;
+  if (second && second != a.worst) rows.emplace_back("second", *second);
+  rows.emplace_back("worst", *a.worst);
+  std::vector<Column> columns{{""}, {"point"}};
+  for (size_t o = 0; o < p.table.objective.size(); ++o) columns.push_back({objective_words(p.table, o), true});
+  std::string html = head(columns);
+  for (const auto& [word, i] : rows) {
+    html += "<tr>" + cell(word) + cell(std::to_string(i + 1) + ": " + words_of(p.table, i));
+    for (const Spread& s : a.point[i].value) html += cell(spread(s), true);
+    html += "</tr>\n";
+  }
+  return html + end_table;
+}
+
+std::string answer_html(const StudyPage& p) {
+  std::string html = answer_table(p);
+  if (p.why.size() == 2 && p.why[0].score && p.why[1].score)
+    html += "<p>" + escaped(why_words(*p.why[0].score, *p.why[1].score)) + "</p>\n";
+  html += "<div class=\"pair\">\n";
+  if (p.table.objective.size() > 1) html += front_chart(p, 0, 1);
+  if (!p.why.empty() && !p.why[0].pictures.empty())
+    html += "<figure><h3>The best rig and what it sees</h3>" + image(p.why[0], 0) + "</figure>\n";
+  return html + "</div>\n";
 }
 
 std::string notes_html(const StudyPage& p) {
@@ -304,13 +254,14 @@ void write_study_page(const std::string& dir, const StudyPage& p) {
       "</style>\n</head>\n<body>\n<a class=\"skip\" href=\"#main\">Skip to the details</a>\n<header>\n<h1>adit "
       "study: " +
       escaped(p.table.name) + "</h1>\n<p class=\"verdict\">" + escaped(verdict_of(p)) + "</p>\n<p>" +
-      escaped(p.table.about) + "</p>\n</header>\n<main id=\"main\">\n";
-  if (p.table.objective.size() > 1)
-    html += "<div class=\"pair\">" + front_chart(p, 0, 1) + agreement_chart(p) + "</div>\n";
+      escaped(p.table.about.empty() ? "" : p.table.about + ". ") + escaped(counts_of(p)) +
+      "</p>\n</header>\n<main id=\"main\">\n";
+  html += "<section><h2>The answer</h2>\n" + answer_html(p) + "</section>\n";
   html += "<section><h2>Points</h2>\n" + points_table(p) + "</section>\n";
   html += "<section><h2>What each factor does</h2>\n" + effects_table(p) + differences_table(p) + "</section>\n";
   html += "<section><h2>Why</h2>\n" + why_html(p) + "</section>\n";
-  html += "<section><h2>How well geometry alone foretells it</h2>\n" + agreement_html(p) + "</section>\n";
+  html += "<section><h2>How well geometry alone foretells it</h2>\n" + agreement_chart(p) + agreement_html(p) +
+          "</section>\n";
   if (!p.recommended_toml.empty())
     html += "<section><h2>The recommended rig</h2>\n<pre tabindex=\"0\">" + escaped(p.recommended_toml) +
             "</pre></section>\n";

@@ -238,30 +238,34 @@ std::string charts_html(const TrendInput& in) {
   return html;
 }
 
-// Times, by machine: they are never judged with the accuracy.
+// Times and memory, by machine: they are never judged with the accuracy.
 std::string speed_html(const TrendInput& in) {
-  std::map<std::pair<std::string, std::string>, std::vector<double>> first, last;
-  std::map<std::pair<std::string, std::string>, size_t> nights;
+  struct Cost {
+    std::vector<double> seconds, gib;
+  };
+  std::map<std::pair<std::string, std::string>, std::vector<Cost>> costs;  // by machine and group, night after night
   for (const Night& n : in.nights)
     for (const Group& g : groups_of({n})) {
-      std::vector<double> seconds;
-      for (const auto& [seed, run] : runs_of(n, g))
-        if (std::isfinite(run->seconds)) seconds.push_back(run->seconds);
-      if (seconds.empty()) continue;
-      const std::pair key{n.machine + ", " + n.compiler, g.first + ", " + g.second};
-      if (!first.contains(key)) first[key] = seconds;
-      last[key] = seconds;
-      ++nights[key];
+      Cost cost;
+      for (const auto& [seed, run] : runs_of(n, g)) {
+        if (std::isfinite(run->seconds)) cost.seconds.push_back(run->seconds);
+        if (std::isfinite(run->peak_gib)) cost.gib.push_back(run->peak_gib);
+      }
+      if (!cost.seconds.empty()) costs[{n.machine + ", " + n.compiler, g.first + ", " + g.second}].push_back(cost);
     }
-  if (nights.empty()) return "";
+  if (costs.empty()) return "";
   std::string html =
-      "<section><h2 id=\"speed\">Time of a run</h2>\n<div class=\"scroll\"><table><thead><tr><th>machine</th><th>runs"
-      "</th><th class=\"n\">nights</th><th class=\"n\">first night, s</th><th class=\"n\">last night, s</th></tr>"
-      "</thead><tbody>\n";
-  for (auto& [key, count] : nights)
+      "<section><h2 id=\"speed\">Time and memory of a run</h2>\n<div class=\"scroll\"><table><thead><tr><th>machine"
+      "</th><th>runs</th><th class=\"n\">nights</th><th class=\"n\">first night, s</th><th class=\"n\">last night, "
+      "s</th>"
+      "<th class=\"n\">first night, GiB</th><th class=\"n\">last night, GiB</th></tr></thead><tbody>\n";
+  const auto median = [](std::vector<double> values) {
+    return "<td class=\"n\">" + (values.empty() ? "–" : plain_number(quantile(values, 0.5), 3)) + "</td>";
+  };
+  for (const auto& [key, nights] : costs)
     html += "<tr><td>" + escaped(key.first) + "</td><td>" + escaped(key.second) + "</td><td class=\"n\">" +
-            std::to_string(count) + "</td><td class=\"n\">" + plain_number(quantile(first[key], 0.5), 3) +
-            "</td><td class=\"n\">" + plain_number(quantile(last[key], 0.5), 3) + "</td></tr>\n";
+            std::to_string(nights.size()) + "</td>" + median(nights.front().seconds) + median(nights.back().seconds) +
+            median(nights.front().gib) + median(nights.back().gib) + "</tr>\n";
   return html + "</tbody></table></div></section>\n";
 }
 

@@ -3,6 +3,8 @@
 
 #include "base/error.h"
 #include "eval/metric_list.h"
+#include "eval/verdict_nights.h"
+#include "eval/verdict_questions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,168 +16,6 @@ namespace adit {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-using Runs = std::map<int, const NightCell*>;                // by seed
-using Group = std::pair<std::string, std::string>;           // scenario, method
-using ByNight = std::vector<std::pair<const Night*, Runs>>;  // oldest first
-
-Runs runs_of(const Night& night, const Group& group) {
-  Runs runs;
-  for (const NightCell& c : night.cells)
-    if (c.scenario == group.first && c.method == group.second) runs[c.seed] = &c;
-  return runs;
-}
-
-double median_of(std::vector<double> values) {
-  return quantile(values, 0.5);
-}
-
-bool regressed(const Night& n) {
-  return n.verdict == "regressed" && n.accepted.empty();
-}
-
-std::string name_of(const Night& n) {
-  return "night " + std::to_string(n.id) + (n.commit.empty() ? "" : " (" + n.commit.substr(0, 12) + ")");
-}
-
-// Nights that may be a baseline, newest first.
-std::vector<const Night*> candidates_of(const Night& tonight, const std::vector<Night>& past, const SuiteRules& rules) {
-  const size_t colon = rules.baseline.find(':');
-  const std::string kind = rules.baseline.substr(0, colon),
-                    name = colon == std::string::npos ? "" : rules.baseline.substr(colon + 1);
-  if (kind != "window" && (name.empty() || (kind != "branch" && kind != "commit" && kind != "night")))
-    throw Error("baseline '" + rules.baseline + "': must be window, branch:NAME, commit:ID or night:ID");
-  const bool named = kind == "commit" || kind == "night";
-  const std::string branch = kind == "branch" ? name : tonight.branch;
-  std::vector<const Night*> found;
-  for (size_t k = past.size(); k-- > 0;) {
-    const Night& n = past[k];
-    if (kind == "commit"  ? !n.commit.starts_with(name)
-        : kind == "night" ? std::to_string(n.id) != name
-                          : n.branch != branch || regressed(n))
-      continue;
-    found.push_back(&n);
-    if (!named && (!n.accepted.empty() || n.verdict == "improved")) break;
-  }
-  if (found.empty() && kind != "window")
-    throw Error("baseline '" + rules.baseline + "': the history has no such night" +
-                (kind == "branch" ? " that did not regress" : ""));
-  return found;
-}
-
-// Why two nights of a group must not be compared; empty: they may.
-std::string obstacle(const Night& tonight, const Runs& now, const Night& then, const Runs& before) {
-  if (tonight.evaluator != then.evaluator)
-    return "the evaluator is another one than at " + name_of(then) + ": " + tonight.evaluator + " against " +
-           then.evaluator;
-  for (const auto& [seed, run] : now) {
-    const auto other = before.find(seed);
-    if (other == before.end() || run->truth.empty() || other->second->truth.empty()) continue;
-    if (run->truth != other->second->truth)
-      return "the truth of seed " + std::to_string(seed) + " is another one than at " + name_of(then);
-  }
-  return "";
-}
-
-// Of the nights those that a group's runs may be compared with; where there are none, why.
-struct Comparable {
-  ByNight nights;  // newest first
-  std::string obstacle;
-};
-Comparable comparable_of(const Night& tonight, const Runs& now, const Group& group,
-                         const std::vector<const Night*>& nights) {
-  Comparable out;
-  for (const Night* n : nights) {
-    Runs runs = runs_of(*n, group);
-    if (runs.empty()) continue;
-    const std::string why = obstacle(tonight, now, *n, runs);
-    if (why.empty())
-      out.nights.emplace_back(n, std::move(runs));
-    else if (out.obstacle.empty())
-      out.obstacle = why;
-  }
-  if (!out.nights.empty()) out.obstacle.clear();
-  return out;
-}
-
-std::optional<double> value_of(const Runs& runs, int seed, const std::string& metric) {
-  const auto run = runs.find(seed);
-  if (run == runs.end()) return {};
-  const auto value = run->second->value.find(metric);
-  return value == run->second->value.end() || !std::isfinite(value->second) ? std::nullopt
-                                                                            : std::optional<double>(value->second);
-}
-
-// A seed's median over nights.
-std::optional<double> value_of(const ByNight& nights, int seed, const std::string& metric) {
-  std::vector<double> values;
-  for (const auto& [night, runs] : nights)
-    if (const auto v = value_of(runs, seed, metric)) values.push_back(*v);
-  if (values.empty()) return {};
-  return median_of(values);
-}
-
-double badness(Direction better, double value) {
-  switch (better) {
-    case Direction::higher:
-      return -value;
-    case Direction::zero:
-      return std::abs(value);
-    default:
-      return value;
-  }
-}
-
-// A metric's seeds, tonight and before.
-struct Pairs {
-  std::vector<int> seed;
-  std::vector<double> now, before, worse;
-};
-Pairs pairs_of(const Runs& now, const ByNight& before, const SuiteMetric& metric) {
-  Pairs out;
-  for (const auto& [seed, run] : now) {
-    const auto a = value_of(now, seed, metric.name), b = value_of(before, seed, metric.name);
-    if (!a || !b) continue;
-    out.seed.push_back(seed);
-    out.now.push_back(*a), out.before.push_back(*b);
-    out.worse.push_back(badness(metric.better, *a) - badness(metric.better, *b));
-  }
-  return out;
-}
-
-double relevant_of(const SuiteMetric& m, double baseline) {
-  return std::max(m.relevant, std::isfinite(baseline) ? m.relevant_percent / 100 * std::abs(baseline) : 0);
-}
-
-// One question put to the seeds: are they worse (better)? With the least p that its changed seeds can reach.
-struct Question {
-  size_t metric;  // of Verdict::metric
-  double p = 1, least_p = 1;
-};
-Question ask(size_t metric, std::vector<double> differences, const SuiteRules& rules, bool steady) {
-  const auto changed = std::count_if(differences.begin(), differences.end(), [](double d) { return d != 0; });
-  if (rules.test == "wilcoxon") differences = signed_ranks(differences);
-  return {metric, sign_flip_p(differences, steady ? Tail::both : Tail::above),
-          std::ldexp(steady && changed > 0 ? 2 : 1, -static_cast<int>(changed))};
-}
-
-// Holm's p of those questions that could be answered with yes at all, after Tarone: of the least k such that no more than
-// k of them could reach level / k.
-std::map<size_t, double> answers(const std::vector<Question>& questions, double level) {
-  std::vector<const Question*> family;
-  for (size_t k = 1; k <= std::max<size_t>(1, questions.size()); ++k) {
-    family.clear();
-    for (const Question& q : questions)
-      if (q.least_p <= level / static_cast<double>(k)) family.push_back(&q);
-    if (family.size() <= k) break;
-  }
-  std::vector<double> p;
-  for (const Question* q : family) p.push_back(q->p);
-  const std::vector<double> corrected = holm(p);
-  std::map<size_t, double> out;
-  for (size_t k = 0; k < family.size(); ++k) out[family[k]->metric] = corrected[k];
-  return out;
-}
 
 std::string number(double value, int digits = 4) {
   char text[40];
@@ -194,28 +34,12 @@ std::string change_words(const MetricVerdict& m) {
 
 // Everything that is looked at of one scenario and method.
 struct Case {
-  Group group;
-  Runs now;
-  ByNight baseline;  // newest first
-  ByNight stretch;   // nights that creep is looked for in, oldest first
+  RunGroup group;
+  NightRuns now;
+  RunsByNight baseline;  // newest first
+  RunsByNight stretch;   // nights that creep is looked for in, oldest first
   std::string obstacle;
 };
-
-// Since the last night that was accepted.
-ByNight stretch_of(const Night& tonight, const Runs& now, const Group& group, const std::vector<Night>& past,
-                   const SuiteRules& rules) {
-  if (rules.baseline != "window" && !rules.baseline.starts_with("branch:")) return {};
-  const std::string branch = rules.baseline == "window" ? tonight.branch : rules.baseline.substr(7);
-  std::vector<const Night*> nights;
-  for (size_t k = past.size(); k-- > 0 && static_cast<int>(nights.size()) < rules.reach;) {
-    if (past[k].branch != branch || regressed(past[k])) continue;
-    nights.push_back(&past[k]);
-    if (!past[k].accepted.empty()) break;
-  }
-  ByNight found = comparable_of(tonight, now, group, nights).nights;
-  std::reverse(found.begin(), found.end());
-  return found;
-}
 
 class Judge {
  public:
@@ -224,19 +48,19 @@ class Judge {
 
   Verdict all() {
     const std::vector<const Night*> candidates = candidates_of(tonight_, past_, rules_);
-    std::vector<Group> groups;  // in the order of the night's cells
+    std::vector<RunGroup> groups;  // in the order of the night's cells
     for (const NightCell& c : tonight_.cells)
-      if (const Group g{c.scenario, c.method}; std::find(groups.begin(), groups.end(), g) == groups.end())
+      if (const RunGroup g{c.scenario, c.method}; std::find(groups.begin(), groups.end(), g) == groups.end())
         groups.push_back(g);
-    for (const Group& group : groups) {
+    for (const RunGroup& group : groups) {
       Case c{group, runs_of(tonight_, group), {}, {}, {}};
-      Comparable comparable = comparable_of(tonight_, c.now, group, candidates);
+      ComparableNights comparable = comparable_of(tonight_, c.now, group, candidates);
       if (comparable.nights.size() > static_cast<size_t>(rules_.window))
         comparable.nights.resize(static_cast<size_t>(rules_.window));
       c.baseline = std::move(comparable.nights), c.obstacle = comparable.obstacle;
       c.stretch = stretch_of(tonight_, c.now, group, past_, rules_);
       look_at(c);
-      judge_speed(c);
+      out_.speed.push_back(speed_of(tonight_, c.group, c.now, c.baseline));
       cases_.push_back(std::move(c));
     }
     answer();
@@ -267,7 +91,7 @@ class Judge {
       m.runs = static_cast<std::int64_t>(values.size());
       m.value = median_of(values);
       m.difference = spread_of({});
-      const Pairs pairs = pairs_of(c.now, c.baseline, metric);
+      const SeedPairs pairs = pairs_of(c.now, c.baseline, metric);
       m.kind = !c.obstacle.empty() ? "not comparable" : pairs.seed.empty() ? "new" : "pass";
       if (!pairs.seed.empty()) compare(pairs, m);
       out_.metric.push_back(m);
@@ -277,7 +101,7 @@ class Judge {
     }
   }
 
-  void compare(const Pairs& pairs, MetricVerdict& m) {
+  void compare(const SeedPairs& pairs, MetricVerdict& m) {
     std::vector<double> difference;
     for (size_t k = 0; k < pairs.now.size(); ++k) difference.push_back(pairs.now[k] - pairs.before[k]);
     m.baseline = median_of(pairs.before);
@@ -290,11 +114,11 @@ class Judge {
       if (size(pairs.worse[k]) > size(pairs.worse[worst])) worst = k;
     if (size(pairs.worse[worst]) > 0) m.worst_seed = pairs.seed[worst];
     const size_t index = out_.metric.size();
-    worse_.push_back(ask(index, pairs.worse, rules_, steady));
+    worse_.push_back(ask(index, pairs.worse, rules_.test, steady));
     if (steady) return;
     std::vector<double> better = pairs.worse;
     for (double& b : better) b = -b;
-    better_.push_back(ask(index, better, rules_, false));
+    better_.push_back(ask(index, better, rules_.test, false));
   }
 
   // Against the first nights since the metric improved, or was accepted.
@@ -308,9 +132,9 @@ class Judge {
           from = k;
     const auto window = static_cast<size_t>(rules_.window);
     if (m.kind == "not comparable" || c.stretch.size() < from + 2 * window) return;
-    const ByNight stretch(c.stretch.begin() + static_cast<std::ptrdiff_t>(from), c.stretch.end());
-    const ByNight first(stretch.begin(), stretch.begin() + static_cast<std::ptrdiff_t>(window));
-    const Pairs pairs = pairs_of(c.now, first, m.metric);
+    const RunsByNight stretch(c.stretch.begin() + static_cast<std::ptrdiff_t>(from), c.stretch.end());
+    const RunsByNight first(stretch.begin(), stretch.begin() + static_cast<std::ptrdiff_t>(window));
+    const SeedPairs pairs = pairs_of(c.now, first, m.metric);
     if (pairs.seed.empty()) return;
     const bool steady = m.metric.better == Direction::steady;
     const double median = median_of(pairs.worse), before = median_of(pairs.before);
@@ -325,8 +149,8 @@ class Judge {
                                  (since == &tonight_ ? "tonight" : name_of(*since))};
     ask_creep(index, pairs, steady);
   }
-  void ask_creep(size_t index, const Pairs& pairs, bool steady) {
-    crept_.push_back(ask(index, pairs.worse, rules_, steady));
+  void ask_creep(size_t index, const SeedPairs& pairs, bool steady) {
+    crept_.push_back(ask(index, pairs.worse, rules_.test, steady));
   }
 
   void look_for_failures(const Case& c) {
@@ -334,7 +158,7 @@ class Judge {
     int count = 0;
     for (const auto& [seed, run] : c.now) {
       if (run->failure.empty()) continue;
-      const auto before = c.baseline.empty() ? Runs::const_iterator{} : c.baseline[0].second.find(seed);
+      const auto before = c.baseline.empty() ? NightRuns::const_iterator{} : c.baseline[0].second.find(seed);
       if (!c.baseline.empty() && before != c.baseline[0].second.end() && !before->second->failure.empty()) continue;
       seeds += (count++ ? ", " : "") + std::to_string(seed);
       if (why.empty()) why = run->failure;
@@ -345,7 +169,7 @@ class Judge {
                                  " runs failed which did not before (seeds " + seeds + "); the first: " + why});
   }
 
-  // Runs that have a score, but not this metric any more.
+  // NightRuns that have a score, but not this metric any more.
   void look_for_losses(const Case& c, MetricVerdict& m) {
     int lost = 0;
     for (const auto& [seed, run] : c.now)
@@ -373,25 +197,6 @@ class Judge {
     m.words =
         number(value) + " at seed " + std::to_string(seed_of_worst) + ", must be " +
         (value > m.metric.at_most ? "at most " + number(m.metric.at_most) : "at least " + number(m.metric.at_least));
-  }
-
-  void judge_speed(const Case& c) {
-    ByNight like;
-    for (const auto& [night, runs] : c.baseline)
-      if (night->machine == tonight_.machine && night->compiler == tonight_.compiler) like.emplace_back(night, runs);
-    std::vector<double> seconds, before, ratio;
-    for (const auto& [seed, run] : c.now) {
-      if (!std::isfinite(run->seconds) || !run->failure.empty()) continue;
-      seconds.push_back(run->seconds);
-      std::vector<double> then;
-      for (const auto& [night, runs] : like)
-        if (const auto other = runs.find(seed); other != runs.end() && other->second->seconds > 0)
-          then.push_back(other->second->seconds);
-      if (then.empty()) continue;
-      before.push_back(median_of(then));
-      ratio.push_back(run->seconds / before.back());
-    }
-    out_.speed.push_back({c.group.first, c.group.second, median_of(seconds), median_of(before), spread_of(ratio)});
   }
 
   void answer() {
@@ -429,7 +234,7 @@ class Judge {
   double median_worse(size_t index) const {
     const MetricVerdict& m = out_.metric[index];
     for (const Case& c : cases_)
-      if (c.group == Group{m.scenario, m.method}) return median_of(pairs_of(c.now, c.baseline, m.metric).worse);
+      if (c.group == RunGroup{m.scenario, m.method}) return median_of(pairs_of(c.now, c.baseline, m.metric).worse);
     return none;
   }
 
@@ -457,10 +262,15 @@ class Judge {
     const bool few = std::any_of(out_.metric.begin(), out_.metric.end(), [](const auto& m) { return m.kind == "few"; });
     if (few)
       out_.notes.push_back("Some metrics have too few seeds for a verdict; they are held to their tolerances alone.");
-    for (const SpeedVerdict& s : out_.speed)
+    for (const SpeedVerdict& s : out_.speed) {
       if (s.ratio.low > 1.2)
-        out_.notes.push_back(s.scenario + ", " + s.method + ": runs take " + number(100 * (s.ratio.median - 1), 2) +
+        out_.notes.push_back(s.scenario + ", " + s.method + ": runs take " + number(100 * (s.ratio.median - 1), 3) +
                              " % longer than before on this machine.");
+      if (s.memory_ratio.low > 1.2)
+        out_.notes.push_back(s.scenario + ", " + s.method + ": runs hold " +
+                             number(100 * (s.memory_ratio.median - 1), 3) +
+                             " % more memory than before on this machine.");
+    }
   }
 };
 

@@ -50,11 +50,14 @@ struct MetricVerdict {
   std::string words;
 };
 
-/// Time that the runs of a scenario and method took, against nights on the same machine and compiler.
+/// Time that the runs of a scenario and method took and memory that they held, against nights on the same machine and
+/// compiler.
 struct SpeedVerdict {
   std::string scenario, method;
-  double seconds = 0, baseline_s = 0;  // medians; NaN: none
-  Spread ratio;                        // paired by seed
+  double seconds = 0, baseline_s = 0;     // medians; NaN: none
+  Spread ratio;                           // paired by seed
+  double peak_gib = 0, baseline_gib = 0;  // the same of NightCell::peak_gib
+  Spread memory_ratio = {};
 };
 
 struct Verdict {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/files.h"
+#include "eval/spread_json.h"
 #include "eval/verdict.h"
 
 #include <nlohmann/json.hpp>
@@ -12,16 +13,6 @@ namespace adit {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-Json number(const std::optional<double>& value) {
-  return value ? number(*value) : Json(nullptr);
-}
-Json written(const Spread& s) {
-  return {{"n", s.n}, {"median", number(s.median)}, {"low", number(s.low)}, {"high", number(s.high)}};
-}
 
 std::string short_number(double value, int digits = 4) {
   char text[40];
@@ -127,21 +118,24 @@ void write_verdict_json(const std::string& file, const Night& night, const Verdi
                             {"metric", m.metric.name},
                             {"kind", m.kind},
                             {"runs", m.runs},
-                            {"value", number(m.value)},
-                            {"baseline", number(m.baseline)},
-                            {"difference", written(m.difference)},
+                            {"value", json_of<Json>(m.value)},
+                            {"baseline", json_of<Json>(m.baseline)},
+                            {"difference", json_of<Json>(m.difference)},
                             {"relevant", m.relevant},
-                            {"p_holm", number(m.p_holm)},
-                            {"p_creep", number(m.p_creep)},
+                            {"p_holm", json_of<Json>(m.p_holm)},
+                            {"p_creep", json_of<Json>(m.p_creep)},
                             {"worst_seed", m.worst_seed ? Json(*m.worst_seed) : Json(nullptr)},
                             {"words", m.words}});
   j["speed"] = Json::array();
   for (const SpeedVerdict& s : v.speed)
     j["speed"].push_back({{"scenario", s.scenario},
                           {"method", s.method},
-                          {"seconds", number(s.seconds)},
-                          {"baseline_s", number(s.baseline_s)},
-                          {"ratio", written(s.ratio)}});
+                          {"seconds", json_of<Json>(s.seconds)},
+                          {"baseline_s", json_of<Json>(s.baseline_s)},
+                          {"ratio", json_of<Json>(s.ratio)},
+                          {"peak_gib", json_of<Json>(s.peak_gib)},
+                          {"baseline_gib", json_of<Json>(s.baseline_gib)},
+                          {"memory_ratio", json_of<Json>(s.memory_ratio)}});
   write_text(file, j.dump(1) + "\n");
 }
 

@@ -37,15 +37,19 @@ function(adit_program name)
   target_link_libraries(${name} PRIVATE ${PROGRAM_USES} ${PROGRAM_HIDES})
 endfunction()
 
-# The tests of one room: one program, each test registered with ctest under the room's name; with WHOLE the program is one
-# test, for suites whose tests share one costly start.
+# The tests of one room: one program, each test registered with ctest under the room's name; with SUITES each of these is one
+# test, and what is of none of them another: for suites whose tests share one costly start.
 #   adit_tests(sensors FILES test_sick.cpp USES sensors HIDES nlohmann_json::nlohmann_json)
 function(adit_tests name)
-  cmake_parse_arguments(ROOM "WHOLE" "" "FILES;USES;HIDES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "FILES;USES;HIDES;SUITES" ${ARGN})
   adit_program(test_${name} COMMON adit_support FILES ${ROOM_FILES} USES ${ROOM_USES}
                HIDES ${ROOM_HIDES} GTest::gtest_main GTest::gmock)
-  if(ROOM_WHOLE)
-    add_test(NAME ${name} COMMAND test_${name})
+  if(ROOM_SUITES)
+    foreach(suite ${ROOM_SUITES})
+      add_test(NAME ${name}.${suite} COMMAND test_${name} --gtest_filter=${suite}.*)
+    endforeach()
+    list(JOIN ROOM_SUITES ".*:" others)
+    add_test(NAME ${name}.others COMMAND test_${name} --gtest_filter=-${others}.*)
   else()
     gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
   endif()

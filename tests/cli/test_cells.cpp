@@ -49,6 +49,22 @@ TEST(Cells, TheNameChangesWithWhatIsInTheRigsFile) {
   fs::remove(file);
 }
 
+TEST(Cells, TheNameChangesWithWhatIsInTheLaserFilesThatARigFileOrAMountNames) {
+  const std::string sheet = fresh("sheet.toml"), rig = fresh("naming_rig.toml");
+  const auto sheet_says = [&](const std::string& range) { write_text(sheet, "range_max_m = " + range + "\n"); };
+  write_text(rig, "[[laser]]\nname = \"front\"\nmodel = \"" + sheet + "\"\n");
+  const std::vector<std::string> by_rig{"sensors.rig=" + rig},
+      by_mount{"sensors.mounts=[\"front model=" + sheet + "\"]"};
+  sheet_says("20.0");
+  const std::string in_rig = cell_name(tiny(by_rig)), on_mount = cell_name(tiny(by_mount));
+  sheet_says("30.0");
+  EXPECT_NE(cell_name(tiny(by_rig)), in_rig);
+  EXPECT_NE(cell_name(tiny(by_mount)), on_mount);
+  sheet_says("20.0");
+  EXPECT_EQ(cell_name(tiny(by_rig)), in_rig);
+  fs::remove(sheet), fs::remove(rig);
+}
+
 TEST(Cells, OfOneMineInAnyOrderOnAnyThreadsInAnyShardsAreTheSameBytesAndFailuresAreRows) {
   // Two cells of one recording, one of another rig, one that cannot drive, one whose rig cannot be.
   const std::vector<Scenario> all{tiny(), tiny({"score.patch_m=0.4"}), tiny({"sensors.mounts=[\"up off\"]"}),

@@ -199,7 +199,8 @@ TEST(Study, ARigWithABlindDirectionLosesAndThePageSaysWhyAndShardsMergeToTheSame
   EXPECT_EQ(j["best"], 0);
   EXPECT_EQ(j["worst"], 1);
   EXPECT_GT(j["points"][1]["fast"]["fast.blind_left"], 0.5);
-  EXPECT_LT(j["points"][0]["fast"]["fast.blind_left"], 0.1);
+  EXPECT_LT(j["points"][0]["fast"]["fast.blind_left"], 0.7 * j["points"][1]["fast"]["fast.blind_left"].get<double>());
+  EXPECT_GT(j["points"][1]["fast"]["fast.hull"], j["points"][0]["fast"]["fast.hull"]);
   EXPECT_THAT(read_text(whole + "/index.html"), HasSubstr("it is blind there"));
   EXPECT_THAT(read_text(whole + "/recommended.toml"), HasSubstr("name = \"profile\""));
 
@@ -225,16 +226,16 @@ TEST(Study, ARigWithABlindDirectionLosesAndThePageSaysWhyAndShardsMergeToTheSame
   fs::remove_all(whole), fs::remove_all(parts);
 }
 
-// Six cells in two tasks of a job array on a Slurm of one node, one task requeued while it runs.
+// Four cells in two tasks of a job array on a Slurm of one node, one task requeued while it runs.
 TEST(Study, ARequeuedJobArrayMergesToWhatOneMachineSays) {
   if (std::system("command -v slurmctld slurmd munged sbatch >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "Slurm is not installed (ci/setup --peers)";
   if (geteuid() != 0) GTEST_SKIP() << "starting a Slurm takes root";
   const std::string file = scratch("slurm.toml"), alone = fresh("alone"), array = fresh("array");
-  write_text(file, "scenario = \"" ADIT_SOURCE_DIR
-                   "/tests/cli/tiny.toml\"\nset = [\"sensors.baud=9600\"]\nseeds = [7]\n"
-                   "[[factor]]\nkey = \"sensors.mounts\"\nvalues = [[], [\"profile off\"], [\"down off\"], "
-                   "[\"up pitch_deg=-80\"], [\"up pitch_deg=-75\"], [\"up off\"]]\n");
+  write_text(file,
+             "scenario = \"" ADIT_SOURCE_DIR
+             "/tests/cli/tiny.toml\"\nset = [\"sensors.baud=9600\"]\nseeds = [7]\n"
+             "[[factor]]\nkey = \"sensors.mounts\"\nvalues = [[], [\"profile off\"], [\"down off\"], [\"up off\"]]\n");
   ASSERT_EQ(adit_says("study " + file + " --quiet -o " + alone).exit_code, 0);
   const int status =
       std::system((std::string(ADIT_SOURCE_DIR) + "/tests/cli/slurm.sh " + fs::canonical(ADIT_BINARY).string() + " " +

@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 
@@ -21,6 +22,7 @@ namespace {
 Night remarkable(int k) {
   Night n = Simulation{}.night(k);
   n.verdict = "regressed", n.date = "2026-03-01 02:00";
+  n.cells[1].peak_gib = 0.5;
   n.cells[2].failure = "drive stuck", n.cells[2].value.clear(), n.cells[2].run = "runs/x";
   n.claims.push_back({"mini", "adit", "m1", "regressed", "1 -> 2"});
   return n;
@@ -45,9 +47,23 @@ TEST(History, GivesBackWhatWasPutIn) {
     EXPECT_EQ(n.cells[k].seed, like.cells[k].seed);
     EXPECT_EQ(n.cells[k].truth, like.cells[k].truth);
   }
+  EXPECT_EQ(n.cells[1].peak_gib, 0.5);
+  EXPECT_TRUE(std::isnan(n.cells[0].peak_gib));
   ASSERT_EQ(n.claims.size(), 1u);
   EXPECT_EQ(n.claims[0].words, "1 -> 2");
   EXPECT_TRUE(History(file).nights("another").empty());
+}
+
+TEST(History, OneOfSchema1KeepsItsNightsAndTakesNewOnes) {
+  const std::string file = scratch("old.db");
+  { History(file).add(remarkable(1)); }
+  Sqlite(file).exec("ALTER TABLE cell DROP COLUMN peak_gib; PRAGMA user_version = 1");
+  History(file).add(remarkable(2));
+  const std::vector<Night> nights = History(file).nights("simulated");
+  ASSERT_EQ(nights.size(), 2u);
+  EXPECT_EQ(nights[0].cells[1].value, remarkable(1).cells[1].value);
+  EXPECT_TRUE(std::isnan(nights[0].cells[1].peak_gib));
+  EXPECT_EQ(nights[1].cells[1].peak_gib, 0.5);
 }
 
 TEST(History, AcceptsTheLastNightOfABranch) {

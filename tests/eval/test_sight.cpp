@@ -40,6 +40,7 @@ FastSettings every_beam(double information = 1) {
   FastSettings s;
   s.information = information;
   s.beam_step_deg = 1, s.step_m = 1;
+  s.one_a_view = false, s.hull = 0;
   return s;
 }
 
@@ -64,7 +65,7 @@ TEST(Sight, BetweenTwoWallsALevelFanTellsAcrossYawAndRollAsTheClosedFormSays) {
   const Mesh mesh = box_mesh({-500, -2, 0}, {500, 2, 2});
   const Caster caster(mesh);
   const Course course(caster, along_x(0, 3), every_beam());
-  const Mat6 I = course.sight(level, {}).information[0];
+  const Mat6 I = course.sight(level, {}).information[1];  // a place with others before and after
   // Beam a meets a wall 2 m aside at r = 2 / sin a: its range changes by 1 / sin a for a metre across, and the level arm
   // of a roll is the height of the plane, 1 m.
   double across = 0, yaw = 0;
@@ -112,6 +113,22 @@ TEST(Sight, ABoxInFrontOfAMirrorBlindsItAndTheOneAroundItIsItsHousing) {
   EXPECT_NEAR(c.of({level}, {wall}).sigma[0], 1, 0.05);
 }
 
+TEST(Sight, BeamsThatEndOnTheVehicleAreCountedAndCostWhatTheWeightSays) {
+  const Mesh mesh = box_mesh({-10, -2, 0}, {10, 2, 2});
+  const Caster caster(mesh);
+  FastSettings free = every_beam(), costly = every_beam();
+  costly.hull = 3;
+  const Trajectory path = along_x(-5, 5);
+  const Course a(caster, path, free), b(caster, path, costly);
+  const Hull deck{{"deck", {-5, -5, 0.5}, {5, 5, 0.6}}};  // wider than the chamber: all of what looks down ends on it
+  const Sight down_a = a.sight(down, deck), down_b = b.sight(down, deck), up_b = b.sight(up, deck);
+  const Sight* const on_a[] = {&down_a};
+  const Sight* const on_b[] = {&down_b};
+  EXPECT_EQ(up_b.blocked, 0);
+  EXPECT_NEAR(down_b.blocked, 1 - 2 * 11.3 / 181, 2.0 / 181);  // within atan(0.4 / 2) of level the walls come first
+  EXPECT_NEAR(a.score(on_a).value - b.score(on_b).value, 3 * down_b.blocked, 1e-12);
+}
+
 TEST(Sight, ValuesAreMonotoneAndSubmodular) {
   const Chamber c;
   const std::vector<Mount> all{level, up, down, ahead, mount(90, 0, 0), mount(0, -60, 0)};
@@ -124,6 +141,41 @@ TEST(Sight, ValuesAreMonotoneAndSubmodular) {
         EXPECT_GE(large, -1e-12);
         EXPECT_GE(small, large - 1e-9) << a << " " << b << " " << x;
       }
+}
+
+TEST(Sight, AFanAcrossTheTravelSeesNewRockAtEachStationWhichTellsAsMuchAsItsUnevennessLetsIt) {
+  const Mesh mesh = box_mesh({-500, -2, 0}, {500, 2, 2});
+  const Caster caster(mesh);
+  FastSettings known = every_beam(), unknown = every_beam();
+  known.unknown_m = 0, unknown.unknown_m = 0.3;
+  const Trajectory path = along_x(0, 3);
+  const Course a(caster, path, known), b(caster, path, unknown);
+  const double less = 0.01 * 0.01 / (0.01 * 0.01 + 0.3 * 0.3);
+  const Mat6 known_up = a.sight(up, {}).information[1], unknown_up = b.sight(up, {}).information[1];
+  EXPECT_GT(known_up(2, 2), 0);
+  EXPECT_NEAR((unknown_up - less * known_up).norm(), 0, 1e-9 * known_up.norm());
+  // Fans along the travel see the same rock again.
+  for (const Mount& m : {level, ahead})
+    EXPECT_EQ(a.sight(m, {}).information[1], b.sight(m, {}).information[1]) << m.name;
+}
+
+TEST(Sight, WhereOneLaserAViewCountsASecondOneOfItAddsNothingAndWithoutOneThatLooksUpThereIsNoVoid) {
+  const Mesh mesh = box_mesh({-10, -2, 0}, {10, 2, 2});
+  const Caster caster(mesh);
+  FastSettings s = every_beam();
+  s.one_a_view = true;
+  const Course course(caster, along_x(-5, 5), s);
+  const auto of = [&](const std::vector<Mount>& mounts) {
+    std::vector<Sight> sights;
+    for (const Mount& m : mounts) sights.push_back(course.sight(m, {}));
+    std::vector<const Sight*> all;
+    for (const Sight& one : sights) all.push_back(&one);
+    return course.score(all).value;
+  };
+  EXPECT_EQ(of({level, up, mount(0, -80, 0)}), of({level, up}));
+  EXPECT_EQ(of({level, up, mount(0, -45, 0)}), of({level, up}));  // of no view
+  EXPECT_GT(of({level, up, down}), of({level, up}) + 0.4);        // the lower half of rock and void
+  EXPECT_LT(of({level, down}), of({level, up}) - 0.4);
 }
 
 TEST(Sight, APathOfOneStationIsAnError) {

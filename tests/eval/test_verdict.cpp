@@ -53,7 +53,9 @@ TEST(Verdict, RaisesFalseAlarmsInAtMostFivePercentOfNights) {
     joys += v.verdict == "improved";
   }
   EXPECT_LE(alarms, 10);  // 5 % of 200
-  EXPECT_LE(joys, 11);    // half of alpha goes to them: 5 of 200, sd 2.2
+  // Of an exact test at half of alpha 5 of 200 are expected, so that 5 is no limit: 11 is exceeded once in 200 times. Over
+  // 2000 histories they are 2.35 % (campaign_nightly --simulated).
+  EXPECT_LE(joys, 11);
   EXPECT_GT(alarms + joys, 0) << "a test that never says yes says nothing";
 }
 
@@ -205,16 +207,25 @@ TEST(Verdict, ANamedBaselineIsThatNightOrAnError) {
   }
 }
 
-TEST(Verdict, TimesAreComparedOnOneMachineAlone) {
+TEST(Verdict, TimesAndMemoryAreComparedOnOneMachineAlone) {
   Simulation s;
   std::vector<Night> past;
-  live_through(s.night(1), past, s.rules());
+  Night first = s.night(1);
+  for (NightCell& c : first.cells) c.peak_gib = 0.5;
+  live_through(first, past, s.rules());
   Night slow = s.night(1);
-  for (NightCell& c : slow.cells) c.seconds = 30;
-  EXPECT_NEAR(judge(slow, past, s.rules()).speed[0].ratio.median, 1.5, 1e-12);
-  EXPECT_EQ(judge(slow, past, s.rules()).exit_code, 0);
+  for (NightCell& c : slow.cells) c.seconds = 30, c.peak_gib = 1;
+  const Verdict v = judge(slow, past, s.rules());
+  EXPECT_NEAR(v.speed[0].ratio.median, 1.5, 1e-12);
+  EXPECT_NEAR(v.speed[0].memory_ratio.median, 2, 1e-12);
+  EXPECT_EQ(v.speed[0].baseline_gib, 0.5);
+  EXPECT_EQ(v.exit_code, 0);
+  ASSERT_EQ(v.notes.size(), 2u);
+  EXPECT_NE(v.notes[1].find("100 % more memory"), std::string::npos) << v.notes[1];
   slow.machine = "another";
-  EXPECT_EQ(judge(slow, past, s.rules()).speed[0].ratio.n, 0);
+  const Verdict elsewhere = judge(slow, past, s.rules());
+  EXPECT_EQ(elsewhere.speed[0].ratio.n, 0);
+  EXPECT_EQ(elsewhere.speed[0].memory_ratio.n, 0);
 }
 
 TEST(Verdict, FilesTellTheSameAndEscapeWhatTheyMust) {
