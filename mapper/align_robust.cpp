@@ -347,6 +347,8 @@ Aligned align_robust(const Odometry& odometry, const MatchPlaces& match_places, 
   if (p.node.size() > 1) {
     result.graph = solve_graph({graph_of(p), p.chain.scan, true}, "path");
     result.covariance = spread_covariances(p.chain, result.X_MB, result.graph->covariance);
+    for (size_t i = 1; i < odometry.jitter.size(); ++i)
+      result.covariance[i] = result.covariance[i] / odometry.steadiness + odometry.jitter[i];
   }
   if (!result.converged) result.notes.push_back("closures were still found in the last round allowed");
   progress("closing loops", settings.max_rounds, settings.max_rounds);

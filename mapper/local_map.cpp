@@ -13,8 +13,6 @@ namespace {
 
 constexpr double index_m = 0.25;  // cell of the index
 constexpr double like = 0.5;      // cosine between normals of one rib
-constexpr double blend_m =
-    0.12;  // reach of the blend of surfels; wider blurs the rock (drift 0.05 % at 0.25 m, 0.03 % here)
 
 struct Bounds {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
@@ -97,7 +95,8 @@ void LocalMap::index() {
   surfel_.swap(sorted);
 }
 
-std::optional<LocalMap::Rib> LocalMap::rib_near(const Vec2& p, const Vec2& normal, double radius_m) const {
+std::optional<LocalMap::Rib> LocalMap::rib_near(const Vec2& p, const Vec2& normal, double radius_m,
+                                                double blend_m) const {
   const double x = (p.x() - low_.x()) / index_m, y = (p.y() - low_.y()) / index_m, reach = radius_m / index_m;
   if (!(x + reach >= 0 && y + reach >= 0 && x - reach < width_ && y - reach < height_)) return {};
   const int i0 = std::max(0, static_cast<int>(x - reach)), i1 = std::min(width_ - 1, static_cast<int>(x + reach));

@@ -27,7 +27,8 @@ Aligned align(const Odometry& odometry, const std::vector<ScanPoints>& points, c
               const Progress& progress) {
   if (settings.method == "icra2003") return align_published(odometry, settings.icra2003, progress);
   const Chain chain = chain_of(odometry, settings.robust.node_m);
-  const MatchPlaces match = match_by_scans(points, chain, odometry.X_MB, settings.places, settings.odometry.match);
+  const MatchPlaces match =
+      match_by_scans(points, chain, odometry.X_MB, settings.places, match_at_ribs(settings.odometry.match, odometry));
   return align_robust(odometry, match, settings.robust, progress);
 }
 
@@ -170,9 +171,18 @@ Estimate make_map(const Log& given, const MapSettings& settings, const Progress&
   if (odometry.lost > 0)
     estimate.notes.push_back(std::to_string(odometry.lost) + " scans could not be matched; their motion is predicted");
 
+  if (odometry.uneven) {
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  "ribs are uneven: a scan finds them off the map by %.2f m, 1 sd, as the laser tilts",
+                  odometry.rib_sigma_m);
+    estimate.notes.push_back(text);
+  }
+
   const std::vector<ScanPoints> points = scan_points(scans, mount, odometry.X_MB, settings.odometry.points);
   Aligned aligned = align(odometry, points, settings, progress);
-  estimate.planar = rematch(points, aligned.X_MB, settings.rematch, settings.odometry.match, progress);
+  estimate.planar =
+      rematch(points, aligned.X_MB, settings.rematch, match_at_ribs(settings.odometry.match, odometry), progress);
   estimate.rounds = std::move(aligned.rounds);
   estimate.converged = aligned.converged;
   estimate.closures = std::move(aligned.closures);

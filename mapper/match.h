@@ -16,6 +16,8 @@ struct MatchSettings {
   int iterations = 20;
   double map_sigma_m = 0.02;      // of a surfel along its normal: how far the rib leaves its line between beams
   double weak_sigma_m = 0.03;     // directions in which a match is less certain than this are left to the prior
+  double even_m = 0.014;          // points that leave the map by less than this, 1 sd, beyond their noise: even ribs
+  double swallowed = 3;           // uneven ribs move a scan by so many times what they leave of it
   double min_inlier_share = 0.4;  // of a scan's points, for a match to be one
 };
 Fields fields(MatchSettings& s);
@@ -34,6 +36,7 @@ struct Match {
   double known_share = 0;       // of the scan's points that have any rib of the map near them
   double inlier_share = 0;      // of the scan's points that lie on a rib of the map (within 3 sigma)
   double rms_m = 0;             // of the inliers' distances
+  double uneven_m = 0;          // that uneven ribs may have moved it, 1 sd; 0 where they are even
   double weak_sigma_m = 0;      // 1 sd of the position in its least certain direction (yaw free); +inf: not seen at all
   Vec2 weak_direction = Vec2::UnitX();  // of it, in B
   bool degenerate = false;  // weak_sigma_m is above the setting: that direction of X_AB is the prior's (or the guess's)

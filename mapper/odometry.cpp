@@ -28,6 +28,14 @@ LocalMap map_of(const std::deque<KeyScan>& keys) {
   return LocalMap(scans, poses);
 }
 
+// Pairs are sought as far off as the ribs may be.
+MatchSettings with_sigma(const MatchSettings& s, double rib_sigma_m) {
+  MatchSettings out = s;
+  out.map_sigma_m = rib_sigma_m;
+  out.gate_end_m = std::max(s.gate_end_m, std::min(0.5, 4 * rib_sigma_m));
+  return out;
+}
+
 Mat3 prediction_information(double dt_s, const OdometrySettings& s) {
   const double m = s.speed_change_m_s2 * dt_s * dt_s + 1e-4, rad = s.turn_change_deg_s2 * degree * dt_s * dt_s + 1e-5;
   return Vec3(1 / (m * m), 1 / (m * m), 1 / (rad * rad)).asDiagonal();
@@ -54,9 +62,9 @@ class Drift {
 // What one step came to.
 struct Step {
   Pose2 X_MB;
-  Mat3 information;
+  Mat3 information, jitter = Mat3::Zero();
   bool placed = false, degenerate = false, breaks = false;
-  double known_share = 0;
+  double known_share = 0, rib_sigma_m = 0;
   Vec2 weak_direction = Vec2::UnitX();
   ScanPoints points;
 };
@@ -64,10 +72,13 @@ struct Step {
 /// The state that goes from scan to scan.
 class Tracker {
  public:
-  Tracker(const Scans& scans, const Mount& mount, const OdometrySettings& s)
+  /// @param learns  takes ribs for as uneven as the scans before have shown them to be
+  Tracker(const Scans& scans, const Mount& mount, const OdometrySettings& s, bool learns)
       : scans_(scans),
         fan_(fan_of(mount)),
         s_(s),
+        match_(s.match),
+        learns_(learns),
         scan_s_(fan_.offset_s.empty() ? 0 : scan_time(fan_)),
         nods_at_stands_(mount.tilt.nods() && mount.tilt.standing_only) {}
 
@@ -102,8 +113,11 @@ class Tracker {
       out.placed = true;
       out.degenerate = match->degenerate;
       out.known_share = match->known_share;
+      learn(match->uneven_m);
+      out.rib_sigma_m = std::hypot(s_.match.map_sigma_m, std::sqrt(uneven_m2_));
       out.weak_direction = match->weak_direction;
       out.information = match->information + (match->degenerate ? prior.information : Mat3::Zero());
+      out.jitter = out.information.inverse();
       if (!gap) twist_ = twist_of(X_before.inverse() * out.X_MB, dt_s);
     }
     keep(out);
@@ -124,15 +138,21 @@ class Tracker {
 
   std::optional<Match> place(const ScanPoints& points, const Pose2& guess, const PosePrior& prior,
                              const Pose2& X_before, double dt_s) const {
-    const Match m = match_scan(points, map_, guess, s_.match, prior);
+    const Match m = match_scan(points, map_, guess, match_, prior);
     return plausible(m, X_before, dt_s) ? std::optional(m) : std::nullopt;
   }
 
   std::optional<Match> search(const ScanPoints& points, const Pose2& predicted, const Pose2& X_before,
                               double dt_s) const {
     const SearchWindow window{s_.search_m, s_.search_deg * degree};
-    const WideMatch wide = search_scan(points, map_, predicted, window, s_.match);
+    const WideMatch wide = search_scan(points, map_, predicted, window, match_);
     return plausible(wide.best, X_before, dt_s) ? std::optional(wide.best) : std::nullopt;
+  }
+
+  // How even ribs are is learnt over some ten scans.
+  void learn(double uneven_m) {
+    uneven_m2_ += 0.1 * (uneven_m * uneven_m - uneven_m2_);
+    if (learns_) match_ = with_sigma(s_.match, std::sqrt(s_.match.map_sigma_m * s_.match.map_sigma_m + uneven_m2_));
   }
 
   // The beams were taken back by the predicted motion: again, if the motion was another by what one sees.
@@ -170,8 +190,11 @@ class Tracker {
   const Scans& scans_;
   const BeamFan fan_;
   const OdometrySettings& s_;
+  MatchSettings match_;  // as the ribs of the last seconds are
+  const bool learns_;
   const double scan_s_;
   const bool nods_at_stands_;  // its level scans are far apart only where the vehicle stands
+  double uneven_m2_ = 0;
   Twist2 twist_;
   std::deque<KeyScan> keys_;
   LocalMap map_;
@@ -224,6 +247,40 @@ void weaken(const std::vector<double>& stamp_s, const std::vector<Weak>& weak,
   }
 }
 
+Odometry track(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings, bool learns,
+               const Progress& progress) {
+  const size_t n = scans.size();
+  Odometry out;
+  out.stamp_s = scans.stamp_s;
+  out.X_MB.assign(n, Pose2{});
+  out.X_step.assign(n, Pose2{});
+  out.information.assign(n, Mat3::Identity());
+  out.jitter.assign(n, Mat3::Zero());
+  std::vector<Weak> weak(n);
+  std::vector<double> rib_sigma_m{settings.match.map_sigma_m};
+  Tracker tracker(scans, horizontal, settings, learns);
+  tracker.begin();
+  for (size_t i = 1; i < n; ++i) {
+    const Step step = tracker.advance(i, out.X_MB[i - 1], scans.stamp_s[i] - scans.stamp_s[i - 1]);
+    out.X_step[i] = out.X_MB[i - 1].inverse() * step.X_MB;
+    out.X_MB[i] = out.X_MB[i - 1] * out.X_step[i];
+    out.information[i] = settings.information_scale * step.information;
+    out.jitter[i] = step.jitter;
+    weak[i] = {step.degenerate || !step.placed, step.weak_direction};
+    out.lost += !step.placed;
+    if (step.placed) rib_sigma_m.push_back(step.rib_sigma_m);
+    if (step.breaks) out.breaks.push_back(i);
+    if (i % 50 == 0 || i + 1 == n) progress("match scans", static_cast<double>(i + 1), static_cast<double>(n));
+  }
+  const auto middle = rib_sigma_m.begin() + static_cast<std::ptrdiff_t>(rib_sigma_m.size() / 2);
+  std::nth_element(rib_sigma_m.begin(), middle, rib_sigma_m.end());
+  out.rib_sigma_m = *middle;
+  out.steadiness = learns ? 1 : settings.steadiness;
+  out.degenerate = stretches_of(scans.stamp_s, weak, settings);
+  weaken(scans.stamp_s, weak, out.degenerate, out.information);
+  return out;
+}
+
 }  // namespace
 
 Fields fields(OdometrySettings& s) {
@@ -240,9 +297,16 @@ Fields fields(OdometrySettings& s) {
       {"search_m", &s.search_m, "half width of the search where matching fails", 0.1, 10},
       {"search_deg", &s.search_deg, "half width of the search where matching fails", 1, 180},
       {"most_speed_m_s", &s.most_speed_m_s, "a faster match is a wrong one", 0.1, 100},
+      {"uneven_from", &s.uneven_from, "ribs are uneven beyond so many times match.map_sigma_m", 1, 1000},
+      {"steadiness", &s.steadiness, "how many times less than its scans' errors the map of even ribs drifts, variances",
+       1, 1000},
       {"information_scale", &s.information_scale, "of a step against that of its match, by trial", 1e-6, 1e6}};
   all.insert(all.end(), own.begin(), own.end());
   return all;
+}
+
+MatchSettings match_at_ribs(const MatchSettings& settings, const Odometry& odometry) {
+  return odometry.uneven ? with_sigma(settings, odometry.rib_sigma_m) : settings;
 }
 
 Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings,
@@ -253,27 +317,13 @@ Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const Odom
     if (!(scans.stamp_s[i] > scans.stamp_s[i - 1]))
       throw Error("laser '" + horizontal.name + "': scan " + std::to_string(i) + ": its stamp, " +
                   std::to_string(scans.stamp_s[i]) + " s, is not after that of the scan before; stamps must grow");
-  Odometry out;
-  out.stamp_s = scans.stamp_s;
-  out.X_MB.assign(n, Pose2{});
-  out.X_step.assign(n, Pose2{});
-  out.information.assign(n, Mat3::Identity());
-  std::vector<Weak> weak(n);
-  Tracker tracker(scans, horizontal, settings);
-  tracker.begin();
-  for (size_t i = 1; i < n; ++i) {
-    const Step step = tracker.advance(i, out.X_MB[i - 1], scans.stamp_s[i] - scans.stamp_s[i - 1]);
-    out.X_step[i] = out.X_MB[i - 1].inverse() * step.X_MB;
-    out.X_MB[i] = out.X_MB[i - 1] * out.X_step[i];
-    out.information[i] = settings.information_scale * step.information;
-    weak[i] = {step.degenerate || !step.placed, step.weak_direction};
-    out.lost += !step.placed;
-    if (step.breaks) out.breaks.push_back(i);
-    if (i % 50 == 0 || i + 1 == n) progress("match scans", static_cast<double>(i + 1), static_cast<double>(n));
-  }
-  out.degenerate = stretches_of(scans.stamp_s, weak, settings);
-  weaken(scans.stamp_s, weak, out.degenerate, out.information);
-  return out;
+  Odometry even = track(scans, horizontal, settings, false, progress);
+  if (even.rib_sigma_m <= settings.uneven_from * settings.match.map_sigma_m) return even;
+  OdometrySettings patient = settings;
+  patient.match.iterations *= 3;  // pairs flip to and fro between the layers of the map
+  Odometry uneven = track(scans, horizontal, patient, true, progress);
+  uneven.uneven = true;
+  return uneven;
 }
 
 }  // namespace adit

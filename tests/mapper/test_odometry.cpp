@@ -53,6 +53,35 @@ TEST(Odometry, StepsChainToThePosesAndBeginAtTheOrigin) {
   }
 }
 
+// Ribs that lean by half their height, seen by a laser that pitches by 2 deg every 1.1 s: what a beam meets far ahead is
+// nearer or farther by half of what it is higher or lower.
+PlanLog leaning(PlanLog log) {
+  constexpr double lean = 0.5, pitch_rad = 0.035, period_s = 1.1;
+  for (size_t i = 0; i < log.scans.size(); ++i) {
+    const double pitch = pitch_rad * std::sin(2 * std::numbers::pi * log.scans.stamp_s[i] / period_s);
+    for (int k = 0; k < log.scans.beams; ++k)
+      log.scans.range_m[i * log.scans.beams + k] *=
+          static_cast<float>(1 + lean * pitch * std::cos(log.mount.laser.beam_angle_rad(k)));
+  }
+  return log;
+}
+
+TEST(Odometry, RibsThatLeanAreFoundUnevenAndAreMatchedAllTheSame) {
+  const PlanLog log = leaning(straight_and_round(0.05, 100));
+  const Odometry o = estimate_motion(log.scans, log.mount, {});
+  EXPECT_TRUE(o.uneven);
+  EXPECT_EQ(o.lost, 0);
+  // Steps follow the swing of the scans; what adds up is far less.
+  EXPECT_LT(end_error_m(log, o), 0.02 * driven_m(log));
+}
+
+TEST(Odometry, RoughRibsAreEven) {
+  const PlanLog log = straight_and_round(0.05, 100);
+  const Odometry o = estimate_motion(log.scans, log.mount, {});
+  EXPECT_FALSE(o.uneven);
+  EXPECT_EQ(match_at_ribs({}, o).map_sigma_m, MatchSettings{}.map_sigma_m);
+}
+
 TEST(Odometry, ACartThatStandsStays) {
   TourSettings tour;
   tour.stop_at_m = 10, tour.stop_s = 20;
