@@ -239,6 +239,7 @@ std::vector<bool> pareto_front(const std::vector<std::vector<double>>& rows) {
 StudyAnswer answer_of(const StudyTable& t) {
   StudyAnswer answer;
   answer.point.resize(t.point.size());
+  for (const StudyPoint& p : t.point) ADIT_CHECK(p.fast.size() == fast_columns().size());
   CellsOfPoint cells(t.point.size());
   for (const StudyCell& c : t.cell) cells[c.point].push_back(&c);
   std::vector<Source> sources;

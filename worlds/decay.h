@@ -11,7 +11,7 @@ namespace adit {
 
 /// A place where the roof came down.
 struct Fall {
-  Vec2 middle, along;
+  Vec2 middle = Vec2::Zero(), along = Vec2::UnitX();
   double half_along_m, half_across_m;  // of the ellipse (of a skin fall: the rectangle) within which rock is gone
   double height_m;                     // of the cavity
   double wall;                         // tangent of its sides' slope

@@ -50,6 +50,8 @@ function(adit_tests name)
     endforeach()
     list(JOIN ROOM_SUITES ".*:" others)
     add_test(NAME ${name}.others COMMAND test_${name} --gtest_filter=-${others}.*)
+    list(TRANSFORM ROOM_SUITES PREPEND ${name}. OUTPUT_VARIABLE long)
+    set_tests_properties(${long} ${name}.others PROPERTIES COST 100)  # begun first, the short ones fill what is left
   else()
     gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
   endif()

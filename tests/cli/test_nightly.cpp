@@ -99,7 +99,7 @@ TEST(Nightly, ARunBeyondItsToleranceIsExitCodeOneWithPicturesBeforeAndAfter) {
 TEST(Nightly, AnotherEvaluatorIsNotComparableAndSaysSo) {
   const Answer answer = nightly(suite, "--set score.loop_m=2 --history " + scratch("nightly.db") + there());
   EXPECT_EQ(answer.exit_code, 3);
-  EXPECT_THAT(answer.out, HasSubstr("evaluator 1 with [score]"));
+  EXPECT_THAT(answer.out, HasSubstr("with [score]"));
 }
 
 TEST(Nightly, BadInputIsSaidBeforeAnythingRunsAndLeavesTheHistory) {

@@ -31,7 +31,10 @@ StudyTable planted() {
   for (const int a : {0, 1})
     for (const int b : {0, 1}) {
       const size_t p = t.point.size();
-      t.point.push_back({{std::to_string(a), std::to_string(b)}, 100.0 - 50 * a, 1, std::vector<double>(11, -1.0 * a)});
+      t.point.push_back({{std::to_string(a), std::to_string(b)},
+                         100.0 - 50 * a,
+                         1,
+                         std::vector<double>(fast_columns().size(), -1.0 * a)});
       for (int seed = 1; seed <= 6; ++seed)
         t.cell.push_back({"c" + std::to_string(10 * p) + std::to_string(seed),
                           "",
@@ -91,7 +94,7 @@ TEST(Study, AgreementOfFastAndFullIsToldWithItsInterval) {
   t.metric = {{"error_m", "m", Better::lower}};
   t.objective = {"error_m"};
   for (size_t p = 0; p < 30; ++p) {
-    t.point.push_back({{std::to_string(p)}, 0, 0, std::vector<double>(11, static_cast<double>(p))});
+    t.point.push_back({{std::to_string(p)}, 0, 0, std::vector<double>(fast_columns().size(), static_cast<double>(p))});
     t.cell.push_back({"c" + std::to_string(p),
                       "",
                       p,
