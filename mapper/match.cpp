@@ -57,27 +57,6 @@ Linear linearise(const ScanPoints& scan, const LocalMap& map, const Pose2& X, do
   return out;
 }
 
-// What one scan swallows. A laser that pitches, rolls and heaves cuts ribs that lean, bulge or lie under talus at another
-// height in every scan: all points of a rib shift together, by decimetres, and a fit takes most of that for motion. What
-// it leaves is what tells of it: how the points lie about the map blended over more than the layers that it is made of.
-// The median: where ribs are even and people, desks or timber stand before them, most points still lie on ribs.
-double uneven_m(const ScanPoints& scan, const LocalMap& map, const Pose2& X, const MatchSettings& s) {
-  constexpr double blend_m = 0.3, reach_m = 0.4;
-  const double c = std::cos(X.yaw_rad), sn = std::sin(X.yaw_rad);
-  std::vector<double> off2;
-  for (size_t k = 0; k < scan.size(); k += 2) {
-    const Vec2& m = scan.normal_B[k];
-    const auto rib =
-        map.rib_near(X * scan.p_B[k], Vec2(c * m.x() - sn * m.y(), sn * m.x() + c * m.y()), reach_m, blend_m);
-    if (rib) off2.push_back(rib->distance_m * rib->distance_m - scan.sigma_m[k] * scan.sigma_m[k]);
-  }
-  if (off2.empty()) return 0;
-  const auto middle = off2.begin() + static_cast<std::ptrdiff_t>(off2.size() / 2);
-  std::nth_element(off2.begin(), middle, off2.end());
-  constexpr double median_chi2 = 0.4549;  // of one degree of freedom
-  return s.swallowed * std::sqrt(std::max(0.0, *middle / median_chi2 - s.even_m * s.even_m));
-}
-
 // How well the data alone hold the position, yaw being free.
 struct Weakness {
   double sigma_m = inf;
@@ -273,7 +252,6 @@ Match match_scan(const ScanPoints& scan, const LocalMap& map, const Pose2& guess
   out.known_share = static_cast<double>(at.pairs) / static_cast<double>(scan.size());
   out.inlier_share = static_cast<double>(at.inliers) / static_cast<double>(scan.size());
   out.rms_m = at.inliers > 0 ? std::sqrt(at.inlier_squares_m2 / at.inliers) : 0;
-  out.uneven_m = uneven_m(scan, map, out.X_AB, s);
   out.weak_sigma_m = weak.sigma_m;
   out.weak_direction = weak.direction;
   out.degenerate = weak.sigma_m > s.weak_sigma_m;
@@ -282,6 +260,27 @@ Match match_scan(const ScanPoints& scan, const LocalMap& map, const Pose2& guess
   out.information = at.H / excess;
   out.converged = settled && at.inliers >= 10 && out.inlier_share >= s.min_inlier_share;
   return out;
+}
+
+// A laser that pitches, rolls and heaves cuts ribs that lean, bulge or lie under talus at another height in every scan: all
+// points of a rib shift together, by decimetres, and a fit takes most of that for motion. What it leaves is what tells of
+// it: how the points lie about the map blended over more than the layers that it is made of. The median: where ribs are
+// even and people, desks or timber stand before them, most points still lie on ribs.
+double uneven_m(const ScanPoints& scan, const LocalMap& map, const Pose2& X_AB, const MatchSettings& s) {
+  constexpr double blend_m = 0.3, reach_m = 0.4;
+  const double c = std::cos(X_AB.yaw_rad), sn = std::sin(X_AB.yaw_rad);
+  std::vector<double> off2;
+  for (size_t k = 0; k < scan.size(); k += 2) {
+    const Vec2& m = scan.normal_B[k];
+    const auto rib =
+        map.rib_near(X_AB * scan.p_B[k], Vec2(c * m.x() - sn * m.y(), sn * m.x() + c * m.y()), reach_m, blend_m);
+    if (rib) off2.push_back(rib->distance_m * rib->distance_m - scan.sigma_m[k] * scan.sigma_m[k]);
+  }
+  if (off2.empty()) return 0;
+  const auto middle = off2.begin() + static_cast<std::ptrdiff_t>(off2.size() / 2);
+  std::nth_element(off2.begin(), middle, off2.end());
+  constexpr double median_chi2 = 0.4549;  // of one degree of freedom
+  return s.swallowed * std::sqrt(std::max(0.0, *middle / median_chi2 - s.even_m * s.even_m));
 }
 
 WideMatch search_scan(const ScanPoints& scan, const LocalMap& map, const Pose2& guess_X_AB, const SearchWindow& window,

@@ -36,7 +36,6 @@ struct Match {
   double known_share = 0;       // of the scan's points that have any rib of the map near them
   double inlier_share = 0;      // of the scan's points that lie on a rib of the map (within 3 sigma)
   double rms_m = 0;             // of the inliers' distances
-  double uneven_m = 0;          // that uneven ribs may have moved it, 1 sd; 0 where they are even
   double weak_sigma_m = 0;      // 1 sd of the position in its least certain direction (yaw free); +inf: not seen at all
   Vec2 weak_direction = Vec2::UnitX();  // of it, in B
   bool degenerate = false;  // weak_sigma_m is above the setting: that direction of X_AB is the prior's (or the guess's)
@@ -48,6 +47,10 @@ struct Match {
 /// they stay at the guess.
 Match match_scan(const ScanPoints& scan, const LocalMap& map, const Pose2& guess_X_AB, const MatchSettings& settings,
                  const std::optional<PosePrior>& prior = {});
+
+/// How far uneven ribs may have moved the match that placed a scan at X_AB, 1 sd: `swallowed` times what its points lie off
+/// the blended map by, their noise and `even_m` taken off; 0 where ribs are even, or none is near.
+double uneven_m(const ScanPoints& scan, const LocalMap& map, const Pose2& X_AB, const MatchSettings& settings);
 
 /// Where a wide search looks: +- around the guess.
 struct SearchWindow {

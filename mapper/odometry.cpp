@@ -113,7 +113,7 @@ class Tracker {
       out.placed = true;
       out.degenerate = match->degenerate;
       out.known_share = match->known_share;
-      learn(match->uneven_m);
+      learn(uneven_m(out.points, map_, match->X_AB, s_.match));
       out.rib_sigma_m = std::hypot(s_.match.map_sigma_m, std::sqrt(uneven_m2_));
       out.weak_direction = match->weak_direction;
       out.information = match->information + (match->degenerate ? prior.information : Mat3::Zero());
