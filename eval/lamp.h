@@ -3,6 +3,9 @@
 
 #include "eval/scene.h"
 
+#include <cstdint>
+#include <functional>
+
 namespace adit {
 
 /// Where one stands in a mine with a lamp, and which way one looks (a unit vector), in W.
