@@ -97,7 +97,8 @@ double resident_gib(pid_t group) {
   for (const fs::directory_entry& entry : fs::directory_iterator("/proc", gone)) {
     if (!std::isdigit(static_cast<unsigned char>(entry.path().filename().string()[0]))) continue;
     std::ifstream stat(entry.path() / "stat");
-    std::string text((std::istreambuf_iterator<char>(stat)), {});
+    std::string text;
+    std::getline(stat, text, '\0');  // all of it, or nothing of a process that ends meanwhile
     const size_t name_end = text.rfind(')');
     if (name_end == std::string::npos) continue;
     std::istringstream rest(text.substr(name_end + 1));
