@@ -53,31 +53,27 @@ bool inside(const Dexels& solid, const Vec3& p) {
   return false;
 }
 
-// The points in an order in which neighbours in space come after one another (Morton's, in cubes of 0.5 m): those that
-// look at the same faces find them in the cache.
+// The points column by column of a raster over the plan, so that those that look at the same faces come after one another
+// and find them in the cache; what is not finite comes last.
 std::vector<std::uint32_t> neighbours_together(const std::vector<Vec3>& p) {
-  const auto spread = [](std::uint64_t v) {  // 21 bits, two zeros between each
-    v = (v | v << 32) & 0x1f00000000ffffull;
-    v = (v | v << 16) & 0x1f0000ff0000ffull;
-    v = (v | v << 8) & 0x100f00f00f00f00full;
-    v = (v | v << 4) & 0x10c30c30c30c30c3ull;
-    return (v | v << 2) & 0x1249249249249249ull;
-  };
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(p.size());
-  parallel_for(
-      p.size(),
-      [&](size_t i) {
-        std::uint64_t key = 0;
-        for (int k = 0; k < 3; ++k) {
-          const double c = std::floor(2 * p[i][k]) + (1 << 20);
-          key |= spread(static_cast<std::uint64_t>(std::isfinite(c) ? std::clamp(c, 0.0, 2097151.0) : 0.0)) << k;
-        }
-        keyed[i] = {key, static_cast<std::uint32_t>(i)};
-      },
-      grain);
-  std::sort(keyed.begin(), keyed.end());
-  std::vector<std::uint32_t> order;
-  for (const auto& [key, i] : keyed) order.push_back(i);
+  constexpr double edge_m = 2;
+  constexpr size_t most = 2048;  // columns a side; they are wider where the points are spread farther
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Vec3& q : p)
+    if (q.head<2>().allFinite()) low = low.cwiseMin(q.head<2>()), high = high.cwiseMax(q.head<2>());
+  const Vec2 cell_m = ((high - low) / (most - 1)).cwiseMax(edge_m);
+  const size_t across = static_cast<size_t>(std::max(0.0, (high - low).y() / cell_m.y())) + 1;
+  std::vector<std::uint32_t> column(p.size());
+  std::vector<std::uint32_t> begin(most * across + 2);
+  for (size_t i = 0; i < p.size(); ++i) {
+    const Vec2 c = (p[i].head<2>() - low).cwiseQuotient(cell_m);
+    column[i] = static_cast<std::uint32_t>(
+        c.allFinite() ? static_cast<size_t>(c.x()) * across + static_cast<size_t>(c.y()) : most * across);
+    ++begin[column[i] + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<std::uint32_t> order(p.size());
+  for (size_t i = 0; i < p.size(); ++i) order[begin[column[i]]++] = static_cast<std::uint32_t>(i);
   return order;
 }
 
@@ -222,7 +218,9 @@ LaidPoints lay(const MapPoints& points, const std::function<const Pose&(size_t)>
   parallel_for(
       n,
       [&](size_t k) {
-        const size_t i = order[k];
+        const size_t i = order[k], soon = order[std::min(k + 16, n - 1)];
+        __builtin_prefetch(&points.p_M[soon]);
+        if (!points.seen_M.empty()) __builtin_prefetch(&points.seen_M[soon]);
         const Vec3 p = X_WM(i) * points.p_M[i];
         if (!p.allFinite()) return;
         std::optional<Vec3> seen_along;
