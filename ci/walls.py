@@ -35,6 +35,7 @@ HOMES = {
     r"CLI/": ["cli/main.cpp"],
     r"spawn\.h|fcntl\.h": ["cli/external.cpp"],
     r"cholmod|suitesparse/": ["mapper/sparse_solve.cpp"],
+    r"immintrin\.h": ["base/rng.cpp"],
 }
 # Libraries that any .cpp may use, and no header.
 SOURCES_ONLY = [r"nlohmann/", r"fmt/"]

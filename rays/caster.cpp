@@ -50,10 +50,19 @@ struct Packet {
   }
 };
 
-// What 16 rays are in doubles, and what they met.
+// The plane of a face, its normal as long as the cross product of two sides.
+struct Plane {
+  double n[3], a[3], length;
+};
+
+// The planes that 16 rays meet, lane by lane.
 struct Lanes {
-  alignas(64) double o[3][16], d[3][16], a[3][16], b[3][16], c[3][16];
-  alignas(64) double rough[16], exact[16], range_m[16], cosine[16];
+  alignas(64) double n[3][16], a[3][16], length[16];
+
+  void set(size_t k, const Plane& p) {
+    for (int i = 0; i < 3; ++i) n[i][k] = p.n[i], a[i][k] = p.a[i];
+    length[k] = p.length;
+  }
 };
 
 // Ericson, Real-Time Collision Detection, 5.1.5.
@@ -108,25 +117,25 @@ struct Caster::Impl {
     rtcIntersect16(p.valid, scene, &context, &p.rays);
   }
 
-  // refined() of 16 lanes: plain loops that the compiler turns into vectors.
-  void refine(const Packet& p, Lanes& l) const {
+  Plane plane_of(unsigned face) const {
+    const auto& corner = mesh->face[face];
+    const Vec3 &a = mesh->vertex[corner[0]], &b = mesh->vertex[corner[1]], &c = mesh->vertex[corner[2]];
+    const double ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
+    const double vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
+    const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    return {{nx, ny, nz}, {a[0], a[1], a[2]}, std::sqrt(nx * nx + ny * ny + nz * nz)};
+  }
+
+  // The planes of the faces that the rays of a packet met. Neighbours mostly meet one face.
+  void planes_of(const Packet& p, Lanes& l) const {
+    unsigned last = 0;
+    Plane plane = {};
     for (size_t k = 0; k < 16; ++k) {
-      const auto& corner = mesh->face[p.met(k) ? p.rays.hit.primID[k] : 0];
-      const Vec3 &a = mesh->vertex[corner[0]], &b = mesh->vertex[corner[1]], &c = mesh->vertex[corner[2]];
-      for (int i = 0; i < 3; ++i) l.a[i][k] = a[i], l.b[i][k] = b[i], l.c[i][k] = c[i];
-      l.rough[k] = static_cast<double>(p.rays.ray.tfar[k]);
+      const unsigned face = p.met(k) ? p.rays.hit.primID[k] : last;
+      if (k == 0 || face != last) plane = plane_of(face);
+      last = face;
+      l.set(k, plane);
     }
-    for (size_t k = 0; k < 16; ++k) {
-      const double ux = l.b[0][k] - l.a[0][k], uy = l.b[1][k] - l.a[1][k], uz = l.b[2][k] - l.a[2][k];
-      const double vx = l.c[0][k] - l.a[0][k], vy = l.c[1][k] - l.a[1][k], vz = l.c[2][k] - l.a[2][k];
-      const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-      const double slope = nx * l.d[0][k] + ny * l.d[1][k] + nz * l.d[2][k];
-      const double way = nx * (l.a[0][k] - l.o[0][k]) + ny * (l.a[1][k] - l.o[1][k]) + nz * (l.a[2][k] - l.o[2][k]);
-      l.exact[k] = way / slope;
-      l.cosine[k] = slope / std::sqrt(nx * nx + ny * ny + nz * nz);
-    }
-    for (size_t k = 0; k < 16; ++k)
-      l.range_m[k] = std::abs(l.exact[k] - l.rough[k]) < 1e-3 * (1 + l.rough[k]) ? l.exact[k] : l.rough[k];
   }
 };
 
@@ -193,43 +202,71 @@ void Caster::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
   }
 }
 
-void Caster::nearest(const RayColumns<double>& rays, size_t columns, size_t abreast, HitColumns<double>& hits) const {
-  ADIT_CHECK(columns > 0 && rays.size() % columns == 0 && abreast > 0 && 16 % abreast == 0);
-  const size_t rows = rays.size() / columns, wide = 16 / abreast;
+namespace {
+
+// 16 rays from place `at` on: those themselves, or of fewer the last one again.
+struct Sixteen {
+  const double *x, *y, *z, *dx, *dy, *dz;
+  double spare[6][16];
+
+  Sixteen(const RayColumns<double>& rays, size_t at) {
+    const std::vector<double>* columns[] = {&rays.x, &rays.y, &rays.z, &rays.dx, &rays.dy, &rays.dz};
+    const double** places[] = {&x, &y, &z, &dx, &dy, &dz};
+    const size_t n = rays.size() - at;
+    for (size_t i = 0; i < 6; ++i) {
+      *places[i] = columns[i]->data() + at;
+      if (n >= 16) continue;
+      std::copy_n(*places[i], n, spare[i]);
+      std::fill(spare[i] + n, spare[i] + 16, spare[i][n - 1]);
+      *places[i] = spare[i];
+    }
+  }
+  Sixteen(const Sixteen&) = delete;
+  Sixteen& operator=(const Sixteen&) = delete;
+};
+
+// The range to the plane in doubles, or that of Embree where the plane is seen edge-on and says nothing; as in refined().
+// Plain loops that the compiler turns into vectors.
+void refine(const Packet& p, const Sixteen& r, const Lanes& l, double* range_m, double* cosine) {
+  for (size_t k = 0; k < 16; ++k) {
+    const double slope = l.n[0][k] * r.dx[k] + l.n[1][k] * r.dy[k] + l.n[2][k] * r.dz[k];
+    const double way =
+        l.n[0][k] * (l.a[0][k] - r.x[k]) + l.n[1][k] * (l.a[1][k] - r.y[k]) + l.n[2][k] * (l.a[2][k] - r.z[k]);
+    const double exact = way / slope, rough = static_cast<double>(p.rays.ray.tfar[k]);
+    const double sound = std::abs(exact - rough) < 1e-3 * (1 + rough) ? exact : rough;
+    const bool met = p.met(k);
+    range_m[k] = met ? sound : infinity;
+    cosine[k] = met ? slope / l.length[k] : 0;
+  }
+}
+
+}  // namespace
+
+void Caster::nearest(const RayColumns<double>& rays, HitColumns<double>& hits) const {
   hits.resize(rays.size());
   Packet p;
-  const Vec3& m = impl_->middle;
   Lanes l;
-  size_t at[16];
-  for (size_t row = 0; row < rows; row += abreast)
-    for (size_t column = 0; column < columns; column += wide) {
-      size_t n = 0;
-      for (size_t r = row; r < std::min(rows, row + abreast); ++r)
-        for (size_t c = column; c < std::min(columns, column + wide); ++c) at[n++] = r * columns + c;
-      for (size_t k = n; k < 16; ++k) at[k] = at[n - 1];
-      for (size_t k = 0; k < 16; ++k) {
-        const size_t i = at[k];
-        l.o[0][k] = rays.x[i], l.o[1][k] = rays.y[i], l.o[2][k] = rays.z[i];
-        l.d[0][k] = rays.dx[i], l.d[1][k] = rays.dy[i], l.d[2][k] = rays.dz[i];
-      }
-      p.arm(n, 1e4F);
-      for (size_t k = 0; k < 16; ++k) {
-        p.rays.ray.org_x[k] = static_cast<float>(l.o[0][k] - m.x());
-        p.rays.ray.org_y[k] = static_cast<float>(l.o[1][k] - m.y());
-        p.rays.ray.org_z[k] = static_cast<float>(l.o[2][k] - m.z());
-        p.rays.ray.dir_x[k] = static_cast<float>(l.d[0][k]);
-        p.rays.ray.dir_y[k] = static_cast<float>(l.d[1][k]);
-        p.rays.ray.dir_z[k] = static_cast<float>(l.d[2][k]);
-      }
-      impl_->intersect(p);
-      impl_->refine(p, l);
-      for (size_t k = 0; k < n; ++k) {
-        const bool met = p.met(k);
-        hits.range_m[at[k]] = met ? l.range_m[k] : infinity;
-        hits.cosine[at[k]] = met ? l.cosine[k] : 0;
-        hits.face[at[k]] = met ? static_cast<std::int32_t>(p.rays.hit.primID[k]) : -1;
-      }
+  const Vec3& m = impl_->middle;
+  for (size_t at = 0; at < rays.size(); at += 16) {
+    const Sixteen r(rays, at);
+    const size_t n = std::min<size_t>(16, rays.size() - at);
+    p.arm(n, 1e4F);
+    for (size_t k = 0; k < 16; ++k) {
+      p.rays.ray.org_x[k] = static_cast<float>(r.x[k] - m.x());
+      p.rays.ray.org_y[k] = static_cast<float>(r.y[k] - m.y());
+      p.rays.ray.org_z[k] = static_cast<float>(r.z[k] - m.z());
+      p.rays.ray.dir_x[k] = static_cast<float>(r.dx[k]);
+      p.rays.ray.dir_y[k] = static_cast<float>(r.dy[k]);
+      p.rays.ray.dir_z[k] = static_cast<float>(r.dz[k]);
     }
+    impl_->intersect(p);
+    impl_->planes_of(p, l);
+    alignas(64) double range_m[16], cosine[16];
+    refine(p, r, l, range_m, cosine);
+    std::copy_n(range_m, n, hits.range_m.data() + at);
+    std::copy_n(cosine, n, hits.cosine.data() + at);
+    for (size_t k = 0; k < n; ++k) hits.face[at + k] = p.met(k) ? static_cast<std::int32_t>(p.rays.hit.primID[k]) : -1;
+  }
 }
 
 void Caster::glance(const RayColumns<float>& rays, HitColumns<float>& hits) const {

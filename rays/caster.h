@@ -65,10 +65,8 @@ class Caster {
   /// hits[i] belongs to rays[i]. Fastest where neighbours in the span are neighbours in space (beams of one fan in
   /// order).
   void nearest(std::span<const Ray> rays, std::span<Hit> hits) const;
-  /// The same for a table of rays, `columns` in a row: scans one behind the other. Rays that are traced together are
-  /// taken from `abreast` (1, 2, 4, 8 or 16) neighbouring rows and 16 / abreast columns, which should be those that meet
-  /// the same rock; that is a matter of speed alone.
-  void nearest(const RayColumns<double>& rays, size_t columns, size_t abreast, HitColumns<double>& hits) const;
+  /// The same for many, sixteen together in their order.
+  void nearest(const RayColumns<double>& rays, HitColumns<double>& hits) const;
   /// The same to the accuracy of floats, 5e-5 m a few hundred metres from the middle of the mesh: rays given about
   /// middle(), traced in their order.
   void glance(const RayColumns<float>& rays, HitColumns<float>& hits) const;

@@ -3,6 +3,7 @@
 
 #include "base/rng.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 

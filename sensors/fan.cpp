@@ -26,6 +26,7 @@ MountFan make_fan(const Mount& mount, const Bundle& bundle, const Hull& hull, do
     for (size_t i = 0; i < bundle.place.size(); ++i) {
       const Ray ray = spot_ray(axis, fan.across.back(), above, mount.laser, bundle, i);
       fan.shadow.push_back(meet_hull(hull, ray.origin, ray.direction, hull_reflectivity));
+      if (i == 0 && std::isfinite(fan.shadow.back().range_m)) fan.shadowed.push_back(static_cast<size_t>(k));
     }
   }
   return fan;

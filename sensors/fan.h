@@ -16,6 +16,7 @@ struct MountFan {
   std::vector<double> offset_s;     // (beams) when each leaves
   // What each ray of each beam's bundle meets of its own vehicle. (beams x rays)
   std::vector<Meeting> shadow;
+  std::vector<size_t> shadowed;  // beams whose axis meets it
 };
 
 MountFan make_fan(const Mount& mount, const Bundle& bundle, const Hull& hull, double hull_reflectivity);

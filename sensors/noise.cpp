@@ -53,11 +53,6 @@ double dust_range_m(const SensorSettings& s, double rock_m, const BeamAddress& a
   return range_m < rock_m ? range_m : -1;
 }
 
-double counted(double range_m, const SensorSettings& s) {
-  const double step_m = s.counter_mm * 1e-3;
-  return step_m > 0 ? std::floor(range_m / step_m + 0.5) * step_m : range_m;
-}
-
 // Sd of one range: the sheet's, and what the spot adds.
 double sigma_m(const Device& device, const Echo& echo, size_t rays, double cosine, const SensorSettings& s) {
   constexpr double of_spread = 0.1;  // merged surfaces are told less surely
@@ -86,11 +81,88 @@ Reading reading(const Device& device, std::span<Return> returns, double cosine, 
       returns.size() == 1 ? echo_of_one(returns[0], threshold) : first_echo(returns, threshold, settings.pulse_m);
   // Between the threshold of the stop and that of the peak an echo is heard but not measured.
   if (!echo.noticed) return nothing(device.model.codes && echo.margin > 0.85 ? Code::weak : Code::no_echo);
-  double range_m =
-      counted(echo.range_m, settings) + device_error_m(device, echo.range_m, echo.effective_reflectivity, on_s);
+  double range_m = stepped_m(echo.range_m, settings.counter_mm * 1e-3) +
+                   device_error_m(device, echo.range_m, echo.effective_reflectivity, on_s);
   if (settings.noise && chance.range != 0)
     range_m += settings.noise_scale * sigma_m(device, echo, returns.size(), cosine, settings) * chance.range;
   return told(device, range_m, echo.surfaces, echo.spread_m > 0.05 ? trouble::mixed : 0);
+}
+
+namespace {
+
+// What a few axes meet and their chance, side by side: plain loops over them that the compiler turns into vectors.
+struct Some {
+  static constexpr size_t most = 64;
+  size_t n;
+  const double *range_m, *power, *cosine, *normal, *drop;  // (n)
+};
+
+// As Threshold::margin.
+void margins(const Some& some, const LaserModel& model, double dirty_window, double* margin) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (model.chart_range_m.empty() && model.reflectivity_at_4m == 0) {
+    std::fill_n(margin, some.n, infinity);
+    return;
+  }
+  double least[Some::most];
+  for (size_t k = 0; k < some.n; ++k) least[k] = dirty_window * model.least_reflectivity(some.range_m[k]);
+  for (size_t k = 0; k < some.n; ++k) {
+    const double over = some.power[k] / least[k];
+    margin[k] = least[k] > 0 ? over : infinity;
+  }
+}
+
+// What is told of those that are noticed whatever the chance, in the mode's range; NaN of others.
+void tell_ordinary(const Some& some, const Device& device, const SensorSettings& s, const double* margin,
+                   double* told_m) {
+  const LaserModel& m = device.model;
+  const double scale = s.noise ? s.noise_scale : 0, smear = s.footprint ? 1 : 0, bias_m = device.bias_m;
+  const double range_max_m = m.range_max_m, drop_out = s.drop_out;
+  const double sure = s.detection ? std::exp(25 * s.detection_spread) : 0;  // Threshold::passes has it from 24 on
+  double told[Some::most];  // of its own, so that nothing else can change meanwhile
+  for (size_t k = 0; k < some.n; ++k) {
+    const double variance_m2 =
+        range_variance_m2(m, 1 / margin[k]) + smear * footprint_variance_m2(m, some.range_m[k], some.cosine[k]);
+    const double range_m = some.range_m[k] + bias_m + scale * std::sqrt(variance_m2) * some.normal[k];
+    const double stepped = stepped_m(range_m, m.resolution_m);
+    const bool ordinary = (some.drop[k] >= drop_out) & (some.power[k] > 0) & (margin[k] > sure) &
+                          (range_m <= range_max_m) & (stepped > 0);
+    told[k] = ordinary ? stepped : std::numeric_limits<double>::quiet_NaN();
+  }
+  std::copy_n(told, some.n, told_m);
+}
+
+}  // namespace
+
+void read_axes(const Device& device, const Axes& axes, const SensorSettings& s, const Chances& chances, size_t at,
+               const BeamAddress& first, double on_s, std::vector<Reading>& readings) {
+  readings.resize(axes.size());
+  const bool plain = s.crosstalk <= 0 && s.dust_loss_per_m <= 0 && s.dust_echo_per_m <= 0 && s.counter_mm <= 0 &&
+                     !device.varies && std::isfinite(device.model.range_max_m);
+  double margin[Some::most], told_m[Some::most];
+  std::fill_n(told_m, Some::most, std::numeric_limits<double>::quiet_NaN());
+  for (size_t begin = 0; begin < axes.size(); begin += Some::most) {
+    const Some some{std::min(Some::most, axes.size() - begin),
+                    &axes.range_m[begin],
+                    &axes.power[begin],
+                    &axes.cosine[begin],
+                    &chances.range[at + begin],
+                    &chances.drop[at + begin]};
+    if (plain) {
+      margins(some, device.model, s.dirty_window, margin);
+      tell_ordinary(some, device, s, margin, told_m);
+    }
+    for (size_t k = 0; k < some.n; ++k) {
+      const size_t beam = begin + k;
+      if (told_m[k] > 0) {
+        readings[beam] = {static_cast<float>(told_m[k]), Code::range, 1, 0};
+        continue;
+      }
+      Return met{axes.range_m[beam], axes.power[beam]};
+      readings[beam] = reading(device, {&met, 1}, axes.cosine[beam], s, chances[at + beam],
+                               {first.seed, first.scan, first.beam + beam}, on_s);
+    }
+  }
 }
 
 Rig true_rig(const Rig& nominal, const SensorSettings& settings, std::uint64_t seed) {

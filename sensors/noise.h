@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace adit {
 
@@ -34,6 +35,22 @@ struct Reading {
 /// @param on_s           since the device was switched on
 Reading reading(const Device& device, std::span<Return> returns, double cosine, const SensorSettings& settings,
                 const Chance& chance, const BeamAddress& address, double on_s);
+
+/// What the beams of a scan meet whose spots are taken for their axes, by its numbers. (beams)
+struct Axes {
+  std::vector<double> range_m;  // +inf: nothing
+  std::vector<double> power;    // reflectivity * cosine
+  std::vector<double> cosine;   // of the incidence
+
+  void resize(size_t n) { range_m.resize(n), power.resize(n), cosine.resize(n); }
+  size_t size() const { return range_m.size(); }
+};
+
+/// The readings of such a scan, each as reading() has it.
+/// @param chances  of its beams from place `at` on
+/// @param first    of its beam 0
+void read_axes(const Device& device, const Axes& axes, const SensorSettings& settings, const Chances& chances,
+               size_t at, const BeamAddress& first, double on_s, std::vector<Reading>& readings);
 
 /// The rig as it truly is: mounts moved in their own frames by the settings' errors, each laser with a phase of its
 /// own.

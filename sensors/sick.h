@@ -21,7 +21,7 @@ double detection_chance(const LaserModel& model, double effective_reflectivity, 
 /// @param weakness  least reflectivity that is noticed over the target's effective one, 1 at the threshold
 inline double range_variance_m2(const LaserModel& model, double weakness) {
   // Echoes below half of the threshold are not noticed; the law is not carried further.
-  const double w = std::min(weakness, 2.0);
+  const double w = weakness < 2 ? weakness : 2;
   return model.sigma_m * model.sigma_m * (1 + w * w);
 }
 inline double range_sigma_m(const LaserModel& model, double weakness) {
@@ -33,19 +33,25 @@ inline double range_sigma_m(const LaserModel& model, double weakness) {
 inline double footprint_variance_m2(const LaserModel& model, double range_m, double cosine) {
   // Nearer to grazing than 85 degrees the tangent runs away, and the echo is lost anyway.
   constexpr double least = 0.08715574274765817;
-  const double c = std::clamp(cosine, least, 1.0), diameter_m = model.spot_m + model.divergence_rad * range_m;
+  const double sound = cosine > least ? cosine : least, c = sound < 1 ? sound : 1;
+  const double diameter_m = model.spot_m + model.divergence_rad * range_m;
   return diameter_m * diameter_m * (1 - c * c) / (64 * c * c);
 }
 inline double footprint_sigma_m(const LaserModel& model, double range_m, double cosine) {
   return std::sqrt(footprint_variance_m2(model, range_m, cosine));
 }
 
+/// The nearest step of a counter; 0 = it has none.
+inline double stepped_m(double range_m, double step_m) {
+  const double stepped = std::floor(range_m / step_m + 0.5) * step_m;
+  return step_m > 0 ? stepped : range_m;
+}
+
 /// What the telegram says of a measured range: rounded to the resolution; +inf beyond the mode's range, NaN where
 /// nothing positive is left.
 inline float reported_range_m(const LaserModel& model, double range_m) {
   if (range_m > model.range_max_m) return std::numeric_limits<float>::infinity();
-  const double step_m = model.resolution_m;
-  const double told = step_m > 0 ? std::floor(range_m / step_m + 0.5) * step_m : range_m;
+  const double told = stepped_m(range_m, model.resolution_m);
   return told > 0 ? static_cast<float>(told) : std::numeric_limits<float>::quiet_NaN();
 }
 

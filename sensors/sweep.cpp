@@ -34,18 +34,24 @@ void Beat::next() {
   if (uniform(seed_, Draw::laser_jitter, scan_address(index_, number_), 1) < late_) ++lost_;
 }
 
-// What a few scans need on their way. Columns are (scans x beams).
+// What a few scans need on their way.
 struct Sweep::Shot {
-  Chances chance;
+  Chances chance;                 // (scans x beams)
   std::vector<double> error_rad;  // (beams) of the scan that is being aimed
+  // By the scans' places. (scans x beams)
   RayColumns<double> axis;
   Directions left;  // where there is a bundle
   HitColumns<double> hit;
-  std::vector<float> incidence_rad;  // (beams) of the scan that is being told
+  // Of the scan that is being told. (beams)
+  Axes met;
+  std::vector<Reading> reading;
+  std::vector<std::uint8_t> ghost;  // whether any of a beam was seen in a mirror
   // The rays beside the axes of one scan's beams. (beams x others)
   RayColumns<float> ray;
   HitColumns<float> glance;
   std::vector<Return> returns;  // (rays) of one beam
+
+  Ray axis_at(size_t i) const { return {{axis.x[i], axis.y[i], axis.z[i]}, {axis.dx[i], axis.dy[i], axis.dz[i]}}; }
 };
 
 Sweep::Sweep(const Caster& caster, const Trajectory& path, const Mount& mount, size_t index, const Hull& hull,
@@ -69,6 +75,7 @@ Sweep::Sweep(const Caster& caster, const Trajectory& path, const Mount& mount, s
     other_.y.push_back(static_cast<float>(bundle_.place[i].y()));
     other_.shorter.push_back(static_cast<float>(1 / std::sqrt(1 + lean * lean * bundle_.place[i].squaredNorm())));
   }
+  if (!caster.mesh().reflectivity.empty()) reflectivity_ = caster.mesh().reflectivity.data();
   const std::vector<Label>& labels = caster.mesh().label;
   if (settings.water && water_label() && std::find(labels.begin(), labels.end(), *water_label()) != labels.end())
     water_ = water_label();
@@ -100,29 +107,30 @@ MountFan Sweep::tilted_fan(double tilt_rad) const {
   return make_fan(mount, bundle_, *hull_, settings_->hull_reflectivity);
 }
 
-void Sweep::aim(const Aim& aim, double time_s, std::uint64_t scan, size_t at, Motion& motion, Shot& shot) const {
+void Sweep::aim(const Aim& aim, double time_s, std::uint64_t scan, size_t at, const Places& places, Motion& motion,
+                Shot& shot) const {
   constexpr double degree = std::numbers::pi / 180;
   const size_t beams = aim.beams();
   const LaserModel& m = device_.model;
   const bool noisy = settings_->noise && (m.sigma_m > 0 || m.spot_m > 0 || m.divergence_rad > 0);
   draw_chances(draws_, scan, beams, noisy || settings_->beam_angle_deg > 0, shot.chance, at);
   for (size_t k = 0; k < beams; ++k) shot.error_rad[k] = settings_->beam_angle_deg * degree * shot.chance.angle[at + k];
-  aim.rays(time_s, shot.error_rad, motion, shot.axis, at, bundle_.place.size() > 1 ? &shot.left : nullptr);
+  aim.rays(time_s, shot.error_rad, motion, shot.axis, places, bundle_.place.size() > 1 ? &shot.left : nullptr);
 }
 
 // The spots' other rays. Those of one spot stay together: they meet the same rock.
-void Sweep::spread(size_t at, Shot& shot) const {
+void Sweep::spread(const Places& places, Shot& shot) const {
   const size_t others = bundle_.place.size() - 1, beams = fan_.along.size();
   const float wide = static_cast<float>(mount_->laser.spot_m / 2),
               lean = static_cast<float>(mount_->laser.divergence_rad / 2);
   shot.ray.resize(beams * others);
   const Vec3& middle = caster_->middle();
   for (size_t k = 0; k < beams; ++k) {
-    const RayColumns<double>& axis = shot.axis;
-    const Vec3 d(axis.dx[at + k], axis.dy[at + k], axis.dz[at + k]);
-    const Vec3 left(shot.left.x[at + k], shot.left.y[at + k], shot.left.z[at + k]), above = d.cross(left);
-    const Eigen::Vector3f o = (Vec3(axis.x[at + k], axis.y[at + k], axis.z[at + k]) - middle).cast<float>(),
-                          a = d.cast<float>(), l = left.cast<float>(), u = above.cast<float>();
+    const size_t at = places[k];
+    const Ray axis = shot.axis_at(at);
+    const Vec3 &d = axis.direction, left(shot.left.x[at], shot.left.y[at], shot.left.z[at]), above = d.cross(left);
+    const Eigen::Vector3f o = (axis.origin - middle).cast<float>(), a = d.cast<float>(), l = left.cast<float>(),
+                          u = above.cast<float>();
     const float *px = other_.x.data(), *py = other_.y.data(), *shorter = other_.shorter.data();
     const auto axis_of = [&](int i, float* from, float* to) {
       const float oi = o[i], ai = a[i], li = l[i], ui = u[i];
@@ -140,46 +148,85 @@ void Sweep::spread(size_t at, Shot& shot) const {
   caster_->glance(shot.ray, shot.glance);
 }
 
-// What a ray of the world met, or of the vehicle before that.
-Meeting Sweep::meeting(const Meeting& own, double range_m, std::int32_t face, double cosine) const {
-  if (own.range_m < range_m) return own;
-  return meeting_of(caster_->mesh(), {range_m, face, cosine}, settings_->reflectivity);
+double Sweep::reflectivity_of(std::int32_t face) const {
+  if (face < 0) return 0;
+  return reflectivity_ ? static_cast<double>(reflectivity_[face]) : settings_->reflectivity;
 }
 
-// Fills the returns of a beam whose axis meets `axis`. Says whether any of them was seen in a mirror.
-bool Sweep::gather(const MountFan& fan, size_t beam, size_t at, const Meeting& axis, Shot& shot) const {
-  const size_t rays = bundle_.place.size();
-  shot.returns[0] = {axis.range_m, bundle_.weight[0] * axis.effective_reflectivity()};
-  const std::vector<float>& reflectivity = caster_->mesh().reflectivity;
-  const size_t first = beam * (rays - 1);
+namespace {
+
+// A property of faces by the faces of a scan's beams.
+template <class Told, class T>
+void look_up_faces(const std::vector<T>& of_face, T of_none, const std::int32_t* face, size_t n, Told* told) {
+  const T* known = of_face.data();
+  if (of_face.empty()) return void(std::fill_n(told, n, static_cast<Told>(of_none)));
+  for (size_t k = 0; k < n; ++k) told[k] = static_cast<Told>(face[k] >= 0 ? known[face[k]] : of_none);
+}
+
+}  // namespace
+
+// What the axes of a scan meet: the world, or the vehicle before that.
+void Sweep::look_up(const MountFan& fan, const Places& places, size_t row, Shot& shot, ScanTruth& truth) const {
+  const size_t beams = fan.along.size(), first = row * beams;
+  const Mesh& mesh = caster_->mesh();
+  std::int32_t* face = &truth.face[first];
+  double *range_m = shot.met.range_m.data(), *cosine = shot.met.cosine.data(), *power = shot.met.power.data();
+  for (size_t k = 0; k < beams; ++k) {
+    const size_t at = places[k];
+    face[k] = shot.hit.face[at];
+    range_m[k] = shot.hit.range_m[at];
+    cosine[k] = face[k] < 0 ? 1 : std::abs(shot.hit.cosine[at]);
+  }
+  look_up_faces(mesh.label, Label::none, face, beams, &truth.label[first]);
+  look_up_faces(mesh.part, -1, face, beams, &truth.part[first]);
+  look_up_faces(mesh.passage, -1, face, beams, &truth.passage[first]);
+  for (size_t k = 0; k < beams; ++k) power[k] = reflectivity_of(face[k]) * cosine[k];
+  arcs(cosine, &truth.incidence_rad[first], beams);
+  for (const size_t k : fan.shadowed) {
+    const Meeting& own = fan.shadow[k * bundle_.place.size()];
+    if (own.range_m >= range_m[k]) continue;
+    range_m[k] = own.range_m, cosine[k] = own.cosine, power[k] = own.effective_reflectivity();
+    truth.label[first + k] = static_cast<std::uint8_t>(own.label);
+    truth.part[first + k] = truth.passage[first + k] = face[k] = -1;
+    truth.incidence_rad[first + k] = static_cast<float>(own.incidence_rad());
+  }
+  for (size_t k = 0; k < beams; ++k) truth.range_m[first + k] = static_cast<float>(range_m[k]);
+}
+
+// What a ray of the world met, or of the vehicle before that.
+Meeting Sweep::meeting(const Meeting& own, const Hit& hit) const {
+  return own.range_m < hit.range_m ? own : meeting_of(caster_->mesh(), hit, settings_->reflectivity);
+}
+
+// Fills the returns of a beam's spot. Says whether any of them was seen in a mirror.
+bool Sweep::gather(const MountFan& fan, size_t beam, size_t at, Shot& shot) const {
+  const size_t rays = bundle_.place.size(), first = beam * (rays - 1);
+  shot.returns[0] = {shot.met.range_m[beam], bundle_.weight[0] * shot.met.power[beam]};
   for (size_t i = 1; i < rays; ++i) {
     const size_t j = first + i - 1;
     const Meeting& own = fan.shadow[beam * rays + i];
-    const std::int32_t face = shot.glance.face[j];
     const double range_m = static_cast<double>(shot.glance.range_m[j]);
-    const double reflects = face < 0               ? 0
-                            : reflectivity.empty() ? settings_->reflectivity
-                                                   : static_cast<double>(reflectivity[static_cast<size_t>(face)]);
+    const double reflects = reflectivity_of(shot.glance.face[j]);
     shot.returns[i] =
         own.range_m < range_m
             ? Return{own.range_m, bundle_.weight[i] * own.effective_reflectivity()}
             : Return{range_m, bundle_.weight[i] * reflects * std::abs(static_cast<double>(shot.glance.cosine[j]))};
   }
-  return water_ && mirror(fan, beam, at, axis, shot);
+  return water_ && mirror(fan, beam, at, shot);
 }
 
 // Sees in water what lies beyond it.
-bool Sweep::mirror(const MountFan& fan, size_t beam, size_t at, const Meeting& axis, Shot& shot) const {
+bool Sweep::mirror(const MountFan& fan, size_t beam, size_t at, Shot& shot) const {
   const size_t rays = bundle_.place.size();
   bool mirrored = false;
   for (size_t i = 0; i < rays; ++i) {
     const size_t j = beam * (rays - 1) + i - 1;
-    const Meeting met = i == 0 ? axis
-                               : meeting(fan.shadow[beam * rays + i], static_cast<double>(shot.glance.range_m[j]),
-                                         shot.glance.face[j], static_cast<double>(shot.glance.cosine[j]));
+    const Hit hit = i == 0 ? Hit{shot.hit.range_m[at], shot.hit.face[at], shot.hit.cosine[at]}
+                           : Hit{static_cast<double>(shot.glance.range_m[j]), shot.glance.face[j],
+                                 static_cast<double>(shot.glance.cosine[j])};
+    const Meeting met = meeting(fan.shadow[beam * rays + i], hit);
     if (met.face < 0 || met.label != *water_) continue;
-    const RayColumns<double>& a = shot.axis;
-    Ray ray{{a.x[at + beam], a.y[at + beam], a.z[at + beam]}, {a.dx[at + beam], a.dy[at + beam], a.dz[at + beam]}};
+    Ray ray = shot.axis_at(at);
     if (i > 0)
       ray = {Eigen::Vector3f(shot.ray.x[j], shot.ray.y[j], shot.ray.z[j]).cast<double>() + caster_->middle(),
              Eigen::Vector3f(shot.ray.dx[j], shot.ray.dy[j], shot.ray.dz[j]).cast<double>().normalized()};
@@ -190,31 +237,38 @@ bool Sweep::mirror(const MountFan& fan, size_t beam, size_t at, const Meeting& a
   return mirrored;
 }
 
-void Sweep::tell(const MountFan& fan, size_t at, std::uint64_t scan, size_t row, Shot& shot, Scans& scans,
-                 ScanTruth& truth) const {
-  const size_t beams = fan.along.size(), rays = bundle_.place.size();
-  const double on_s = settings_->on_s + truth.stamp_s[row] - begin_s_;
-  const std::vector<int>& passage = caster_->mesh().passage;
-  arcs(shot.hit.cosine.data() + at, shot.incidence_rad.data(), beams);
+// What the device tells of the scan that was looked up.
+void Sweep::read(const MountFan& fan, size_t at, const Places& places, const BeamAddress& first, double on_s,
+                 Shot& shot) const {
+  const size_t beams = fan.along.size();
+  Axes& met = shot.met;
+  std::fill(shot.ghost.begin(), shot.ghost.end(), 0);
+  if (bundle_.place.size() > 1) {
+    for (size_t k = 0; k < beams; ++k) {
+      shot.ghost[k] = gather(fan, k, places[k], shot);
+      shot.reading[k] = reading(device_, shot.returns, met.cosine[k], *settings_, shot.chance[at + k],
+                                {first.seed, first.scan, k}, on_s);
+    }
+    return;
+  }
+  for (size_t k = 0; water_ && k < beams; ++k) {
+    shot.ghost[k] = gather(fan, k, places[k], shot);
+    met.range_m[k] = shot.returns[0].range_m, met.power[k] = shot.returns[0].power;
+  }
+  read_axes(device_, met, *settings_, shot.chance, at, first, on_s, shot.reading);
+}
+
+void Sweep::tell(const MountFan& fan, size_t at, const Places& places, std::uint64_t scan, size_t row, Shot& shot,
+                 Scans& scans, ScanTruth& truth) const {
+  const size_t beams = fan.along.size();
+  look_up(fan, places, row, shot, truth);
+  read(fan, at, places, {seed_, scan, 0}, settings_->on_s + truth.stamp_s[row] - begin_s_, shot);
   for (size_t k = 0; k < beams; ++k) {
-    const size_t to = row * beams + k;
-    const Meeting& own = fan.shadow[k * rays];
-    const Meeting met = meeting(own, shot.hit.range_m[at + k], shot.hit.face[at + k], shot.hit.cosine[at + k]);
-    const bool mirrored = gather(fan, k, at, met, shot);
-    const Reading r =
-        reading(device_, shot.returns, met.cosine, *settings_, shot.chance[at + k], {seed_, scan, k}, on_s);
-    scans.range_m[to] = r.range_m;
-    scans.code[to] = r.code;
-    truth.range_m[to] = static_cast<float>(met.range_m);
-    truth.label[to] = static_cast<std::uint8_t>(met.label);
-    truth.part[to] = met.part;
-    truth.incidence_rad[to] = std::isinf(met.range_m) ? 0
-                              : met.face >= 0         ? shot.incidence_rad[k]
-                                                      : static_cast<float>(met.incidence_rad());
-    truth.face[to] = met.face;
-    truth.passage[to] = met.face >= 0 && !passage.empty() ? passage[static_cast<size_t>(met.face)] : -1;
-    truth.surfaces[to] = r.surfaces;
-    truth.fault[to] = r.fault | (mirrored ? trouble::ghost : 0);
+    const Reading& r = shot.reading[k];
+    scans.range_m[row * beams + k] = r.range_m;
+    scans.code[row * beams + k] = r.code;
+    truth.surfaces[row * beams + k] = r.surfaces;
+    truth.fault[row * beams + k] = r.fault | (shot.ghost[k] ? trouble::ghost : 0);
   }
 }
 
@@ -238,7 +292,9 @@ void Sweep::fire(size_t begin, size_t end, size_t first, Scans& scans, ScanTruth
   Shot shot;
   shot.returns.resize(rays);
   shot.error_rad.resize(beams);
-  shot.incidence_rad.resize(beams);
+  shot.met.resize(beams);
+  shot.reading.resize(beams);
+  shot.ghost.resize(beams);
   Motion motion(*path_);
   // Of a laser that tells every turn or two the next scans see the same rock; of a slower one they are a step ahead.
   const size_t abreast = mount_->laser.interval_s < 0.06 ? 8 : 4;
@@ -247,18 +303,24 @@ void Sweep::fire(size_t begin, size_t end, size_t first, Scans& scans, ScanTruth
     shot.chance.resize(n * beams);
     shot.axis.resize(n * beams);
     if (rays > 1) shot.left.resize(n * beams);
+    const auto places_of = [&](size_t i) {
+      const size_t group = i - i % abreast;
+      return Places{group * beams + i % abreast, std::min(abreast, n - group)};
+    };
     std::vector<MountFan> tilted(truth.tilt_rad.empty() ? 0 : n);
     for (size_t i = 0; i < n; ++i) {
       if (!tilted.empty()) tilted[i] = tilted_fan(truth.tilt_rad[row + i]);
-      const MountFan& fan = tilted.empty() ? fan_ : tilted[i];
-      aim(tilted.empty() ? aim_ : Aim(fan, mount_->X_BS.translation(), mount_->laser.interlace), truth.stamp_s[row + i],
-          scan_address(index_, first + row + i), i * beams, motion, shot);
+      const std::uint64_t scan = scan_address(index_, first + row + i);
+      const auto aim_by = [&](const Aim& aimed) {
+        aim(aimed, truth.stamp_s[row + i], scan, i * beams, places_of(i), motion, shot);
+      };
+      tilted.empty() ? aim_by(aim_) : aim_by(Aim(tilted[i], mount_->X_BS.translation(), mount_->laser.interlace));
     }
-    caster_->nearest(shot.axis, beams, abreast, shot.hit);
+    caster_->nearest(shot.axis, shot.hit);
     for (size_t i = 0; i < n; ++i) {
-      if (rays > 1) spread(i * beams, shot);
-      tell(tilted.empty() ? fan_ : tilted[i], i * beams, scan_address(index_, first + row + i), row + i, shot, scans,
-           truth);
+      if (rays > 1) spread(places_of(i), shot);
+      tell(tilted.empty() ? fan_ : tilted[i], i * beams, places_of(i), scan_address(index_, first + row + i), row + i,
+           shot, scans, truth);
       if (settings_->dazzle_deg > 0) dazzle(row + i, scans, truth);
     }
   }

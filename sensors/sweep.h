@@ -10,6 +10,7 @@
 #include "sensors/device.h"
 #include "sensors/echo.h"
 #include "sensors/fan.h"
+#include "sensors/noise.h"
 #include "sensors/settings.h"
 
 #include <cstdint>
@@ -51,13 +52,18 @@ class Sweep {
   struct Shot;
 
   MountFan tilted_fan(double tilt_rad) const;
-  void aim(const Aim& aim, double time_s, std::uint64_t scan, size_t at, Motion& motion, Shot& shot) const;
-  void spread(size_t at, Shot& shot) const;
-  Meeting meeting(const Meeting& own, double range_m, std::int32_t face, double cosine) const;
-  bool gather(const MountFan& fan, size_t beam, size_t at, const Meeting& axis, Shot& shot) const;
-  bool mirror(const MountFan& fan, size_t beam, size_t at, const Meeting& axis, Shot& shot) const;
-  void tell(const MountFan& fan, size_t at, std::uint64_t scan, size_t row, Shot& shot, Scans& scans,
-            ScanTruth& truth) const;
+  void aim(const Aim& aim, double time_s, std::uint64_t scan, size_t at, const Places& places, Motion& motion,
+           Shot& shot) const;
+  void spread(const Places& places, Shot& shot) const;
+  double reflectivity_of(std::int32_t face) const;
+  void look_up(const MountFan& fan, const Places& places, size_t row, Shot& shot, ScanTruth& truth) const;
+  Meeting meeting(const Meeting& own, const Hit& hit) const;
+  bool gather(const MountFan& fan, size_t beam, size_t at, Shot& shot) const;
+  bool mirror(const MountFan& fan, size_t beam, size_t at, Shot& shot) const;
+  void read(const MountFan& fan, size_t at, const Places& places, const BeamAddress& first, double on_s,
+            Shot& shot) const;
+  void tell(const MountFan& fan, size_t at, const Places& places, std::uint64_t scan, size_t row, Shot& shot,
+            Scans& scans, ScanTruth& truth) const;
   void dazzle(size_t row, Scans& scans, const ScanTruth& truth) const;
 
   const Caster* caster_;
@@ -76,7 +82,8 @@ class Sweep {
   } other_;
   MountFan fan_;  // while the mount is level
   Aim aim_;
-  std::optional<Label> water_;  // where the mine has any
+  const float* reflectivity_ = nullptr;  // of the faces, where the mine states any
+  std::optional<Label> water_;           // where the mine has any
 };
 
 }  // namespace adit

@@ -7,6 +7,7 @@
 #include "tests/bench/bench.h"
 #include "tests/bench/raw_rays.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -92,6 +93,7 @@ std::vector<Figure> against_raw(const std::string& name, const std::string& mode
   Rig rig = load_rig("cart4", 500000);
   for (Mount& mount : rig.mounts) {
     mount.laser = load_laser(model, 500000);
+    mount.laser.sigma_m = std::max(mount.laser.sigma_m, 0.005);  // of an ideal one too, or no noise would be drawn
     const Timed t = time_laser(settings, mount, caster, drive);
     sum.sweep_s += t.sweep_s;
     sum.raw_s += t.raw_s;

@@ -40,12 +40,12 @@ TEST(Caster, PacketsAnswerAsSingleRays) {
   }
 }
 
-// A fan that walks down a box: rows of scans.
-std::vector<Ray> walking_fan(int rows, int columns) {
+// A fan that walks down a box: beam by beam of scans that stand abreast.
+std::vector<Ray> walking_fan(int scans, int beams) {
   std::vector<Ray> rays;
-  for (int r = 0; r < rows; ++r)
-    for (int c = 0; c < columns; ++c) {
-      const double a = -1.5 + 3.0 * c / (columns - 1);
+  for (int c = 0; c < beams; ++c)
+    for (int r = 0; r < scans; ++r) {
+      const double a = -1.5 + 3.0 * c / (beams - 1);
       rays.push_back({Vec3(5 + 0.1 * r, 2 + 0.01 * r, 1), Vec3(std::cos(a), std::sin(a), 0.02).normalized()});
     }
   return rays;
@@ -63,19 +63,22 @@ RayColumns<T> columns_of(const std::vector<Ray>& rays, const Vec3& about) {
   return c;
 }
 
-TEST(Caster, ATableOfRaysIsAnsweredAsSingleRaysHoweverItIsPacked) {
+TEST(Caster, ColumnsOfRaysAreAnsweredAsSingleRaysHoweverTheyFillPackets) {
   const Mesh mesh = fine_box_mesh({0, 0, 0}, {30, 5, 2}, 0.3);
   const Caster caster(mesh);
-  const std::vector<Ray> rays = walking_fan(11, 37);  // neither fills packets
-  for (const size_t abreast : {1, 2, 4, 8, 16}) {
+  for (const int scans : {1, 2, 4, 8, 11, 16}) {
+    std::vector<Ray> rays = walking_fan(scans, 37);     // fills no whole number of packets
+    rays.push_back({Vec3(10, 2, -5), -Vec3::UnitZ()});  // from below, away: nothing
     HitColumns<double> hits;
-    caster.nearest(columns_of<double>(rays, Vec3::Zero()), 37, abreast, hits);
-    for (size_t i = 0; i < rays.size(); ++i) {
+    caster.nearest(columns_of<double>(rays, Vec3::Zero()), hits);
+    for (size_t i = 0; i + 1 < rays.size(); ++i) {
       const Hit one = caster.nearest(rays[i]);
-      EXPECT_EQ(hits.face[i], one.face) << abreast << " " << i;
-      EXPECT_NEAR(hits.range_m[i], one.range_m, 1e-13 * (1 + one.range_m)) << abreast << " " << i;
-      EXPECT_NEAR(hits.cosine[i], one.cosine, 1e-13) << abreast << " " << i;
+      EXPECT_EQ(hits.face[i], one.face) << scans << " " << i;
+      EXPECT_NEAR(hits.range_m[i], one.range_m, 1e-13 * (1 + one.range_m)) << scans << " " << i;
+      EXPECT_NEAR(hits.cosine[i], one.cosine, 1e-13) << scans << " " << i;
     }
+    EXPECT_EQ(hits.face.back(), -1);
+    EXPECT_EQ(hits.range_m.back(), INFINITY);
   }
 }
 

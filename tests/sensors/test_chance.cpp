@@ -39,6 +39,17 @@ TEST(Chance, IsBoxAndMullersOfTheWordsAtItsAddress) {
   }
 }
 
+TEST(Chance, WordsSideBySideAreThoseAtTheirAddresses) {
+  const Draws draws(7, Draw::beam_chance);
+  for (const std::uint64_t j : {0ULL, 5ULL, 0xFFFFFFFCULL})  // the last one carries into its upper half
+    for (const std::uint64_t i : {3ULL, 0x500000001ULL}) {
+      std::uint32_t words[4][8];
+      draws.eight_at(i, j, words);
+      for (std::uint64_t k = 0; k < 8; ++k)
+        for (size_t w = 0; w < 4; ++w) EXPECT_EQ(words[w][k], draws.at(i, j + k)[w]) << i << " " << j + k << " " << w;
+    }
+}
+
 TEST(Chance, OfOneBeamIsThatOfItInItsScanBitForBit) {
   const Draws draws(7, Draw::beam_chance);
   const Chances chances = drawn(draws, 5, 361, true);

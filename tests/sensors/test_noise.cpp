@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace adit {
@@ -271,6 +273,47 @@ TEST(Noise, EveryEffectIsOffInAnExactLaser) {
     EXPECT_EQ(r.fault, 0);
     EXPECT_EQ(r.code, Code::range);
   }
+}
+
+// What a scan meets that has something of everything: near and far, bright and dark, slanting, nothing at all.
+Axes any_axes(size_t n) {
+  Axes axes;
+  axes.resize(n);
+  for (size_t k = 0; k < n; ++k) {
+    const double u = uniform(1, Draw::test, k, 0), v = uniform(1, Draw::test, k, 1), w = uniform(1, Draw::test, k, 2);
+    const bool nothing = k % 17 == 0;
+    axes.range_m[k] = nothing ? std::numeric_limits<double>::infinity() : k % 13 == 0 ? 0.001 * u : 14 * u;
+    axes.cosine[k] = v;
+    axes.power[k] = nothing ? 0 : w * w * w * v;
+  }
+  return axes;
+}
+
+TEST(Noise, AScanOfAxesIsReadAsItsBeamsOneByOneBitForBit) {
+  const Axes axes = any_axes(1111);
+  const Draws draws(3, Draw::beam_chance);
+  Chances chances;
+  chances.resize(axes.size() + 5);
+  draw_chances(draws, 17, axes.size(), true, chances, 5);
+  SensorSettings plain, still = exact(), dusty;
+  plain.drop_out = 0.05;
+  dusty.dust_loss_per_m = 0.05, dusty.crosstalk = 0.05;
+  for (const char* name : {"lms200", "lms291", "ideal"})
+    for (const SensorSettings& s : {plain, still, dusty}) {
+      Device device = device_of(name, name[0] == 'i' ? LaserChoice{} : LaserChoice{"8m", ""});
+      device.bias_m = 0.004;
+      std::vector<Reading> readings;
+      read_axes(device, axes, s, chances, 5, {3, 17, 0}, 0, readings);
+      ASSERT_EQ(readings.size(), axes.size());
+      for (size_t k = 0; k < axes.size(); ++k) {
+        Return one{axes.range_m[k], axes.power[k]};
+        const Reading r = reading(device, {&one, 1}, axes.cosine[k], s, chances[5 + k], {3, 17, k}, 0);
+        EXPECT_EQ(std::bit_cast<std::uint32_t>(readings[k].range_m), std::bit_cast<std::uint32_t>(r.range_m)) << k;
+        EXPECT_EQ(readings[k].code, r.code) << name << " " << k;
+        EXPECT_EQ(readings[k].surfaces, r.surfaces) << name << " " << k;
+        EXPECT_EQ(readings[k].fault, r.fault) << name << " " << k;
+      }
+    }
 }
 
 TEST(Noise, MountsErrByTheStatedSdAndNotAtAllWhenSwitchedOff) {
