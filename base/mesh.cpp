@@ -43,7 +43,7 @@ const std::map<std::string, int>& label_ids() {
       {"none", 0},    {"floor", 1}, {"roof", 2},      {"rib", 3},       {"cap", 4},   {"vehicle", 5}, {"pusher", 6},
       {"rubble", 7},  {"talus", 8}, {"post", 9},      {"crossbar", 10}, {"crib", 11}, {"bolt", 12},   {"rail", 13},
       {"tie", 14},    {"belt", 15}, {"stopping", 16}, {"door", 17},     {"pipe", 18}, {"cable", 19},  {"water", 20},
-      {"sludge", 21}, {"car", 22},  {"beam", 23},     {"block", 24}};
+      {"sludge", 21}, {"car", 22},  {"beam", 23},     {"block", 24}, {"cavity", 25}, {"scar", 26}};
   return ids;
 }
 
@@ -59,7 +59,15 @@ bool is_ground(Label label) {
 }
 
 bool is_object(Label label) {
-  return label >= Label::post && label != Label::sludge;
+  return label >= Label::post && label <= Label::block && label != Label::sludge;
+}
+
+bool is_roof(Label label) {
+  return label == Label::roof || label == Label::cavity || label == Label::scar;
+}
+
+bool is_numbered(Label label) {
+  return is_object(label) || label == Label::rubble || label == Label::cavity || label == Label::scar;
 }
 
 std::string label_name(Label label) {

@@ -12,8 +12,8 @@
 namespace adit {
 
 /// What a face of a mine is. The ids stand in mesh files and in truth.json.
-/// From `post` on, `sludge` left out, they are things in a mine: closed bodies, whose faces look into them (they bound the
-/// void too).
+/// From `post` to `block`, `sludge` left out, they are things in a mine: closed bodies, whose faces look into them (they
+/// bound the void too).
 enum class Label : std::uint8_t {
   none = 0,
   floor = 1,
@@ -38,13 +38,19 @@ enum class Label : std::uint8_t {
   water = 20,
   sludge = 21,  // floor under mud of iron
   car = 22,
-  beam = 23,   // fallen
-  block = 24,  // loose rock
+  beam = 23,    // fallen
+  block = 24,   // loose rock
+  cavity = 25,  // what a major fall left of the roof
+  scar = 26,    // what a skin fall left of it
 };
 /// Whether wheels stand on it.
 bool is_ground(Label label);
+/// Whether it is overhead: roof, cavity or scar.
+bool is_roof(Label label);
 /// Whether it is a closed body in the void, not rock.
 bool is_object(Label label);
+/// Whether its faces' part is the number of an object: of a body, or of what fell (rubble, cavity, scar).
+bool is_numbered(Label label);
 const std::map<std::string, int>& label_ids();
 std::string label_name(Label label);
 
@@ -70,7 +76,7 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> face;  // (m x 3)
   std::vector<Label> label;                        // (m) or empty
   std::vector<int> part;            // (m) or empty: id of the passage (floor, roof, talus, sludge), pillar (rib)
-                                    // or object; -1 none
+                                    // or object (is_numbered); -1 none
   std::vector<float> reflectivity;  // (m) or empty: diffuse, at 905 nm, 0..1
   std::vector<int> passage;         // (m) or empty: id of the passage that a face bounds
   std::vector<Material> material;   // (m) or empty

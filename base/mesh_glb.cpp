@@ -99,6 +99,9 @@ std::array<double, 3> label_colour(Label label) {
       return {0.66, 0.64, 0.60};
     case Label::cap:
       return {0.75, 0.35, 0.20};
+    case Label::cavity:
+    case Label::scar:
+      return {0.30, 0.27, 0.26};
     case Label::rubble:
     case Label::talus:
     case Label::block:

@@ -35,7 +35,7 @@ Label label_at(const Mesh& mesh, size_t f) {
 // The group of a face: its label, and of a thing its number besides.
 std::string group_of(const Mesh& mesh, size_t f) {
   const Label label = label_at(mesh, f);
-  const bool thing = (is_object(label) || label == Label::rubble) && f < mesh.part.size();
+  const bool thing = is_numbered(label) && f < mesh.part.size();
   return label_name(label) + (thing ? "_" + std::to_string(mesh.part[f]) : "");
 }
 

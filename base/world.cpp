@@ -80,6 +80,10 @@ void read_truth(const json& j, World& world) {
   for (const json& v : j.at("pillars")) world.pillars.push_back(pillar_of(v));
   if (j.contains("objects"))
     for (const json& v : j["objects"]) world.objects.push_back(object_of(v));
+  if (j.contains("left_out"))
+    for (const auto& [label, n] : j["left_out"].items())
+      if (const auto found = label_ids().find(label); found != label_ids().end())
+        world.left_out[static_cast<Label>(found->second)] = n.get<int>();
   if (j.contains("outline"))
     for (const json& v : j["outline"]) world.outline.push_back(vec2_of(v));
 }

@@ -4,6 +4,7 @@
 #include "base/frames.h"
 #include "base/mesh.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,7 @@ struct MineObject {
   Vec3 size_m = Vec3::Zero();    // along x, y, z of the box
   double yaw_rad = 0;            // of the box's x
   double volume_m3 = 0;
-  bool ground = false;  // a part of the floor's surface (rubble): no closed body of its own
+  bool ground = false;  // a part of the rock's surface (rubble, cavity, scar): no closed body of its own
   bool blocks = false;  // no vehicle gets past it
 };
 
@@ -64,6 +65,7 @@ struct World {
   std::vector<Vec2> outline = {};  // outer rim of the void at mid height, counter-clockwise; empty where not known
   WorldNumbers numbers;
   std::vector<MineObject> objects = {};
+  std::map<Label, int> left_out = {};  // things that chance asked for, and that had no room
 };
 
 /// A basis of the junction graph's cycles, each the passages that it runs through in their order: as many as

@@ -125,6 +125,11 @@ void WorldWriter::close(const World& world) {
     put("rocks", rocks);
     put("cycles", cycle_basis(world));
     put("outline", array_of(world.outline));
+    if (!world.left_out.empty()) {
+      json left_out = json::object();
+      for (const auto& [label, things] : world.left_out) left_out[label_name(label)] = things;
+      put("left_out", left_out);
+    }
     put_lines(out, "junctions", world.junctions, junction_of);
     put_lines(out, "passages", world.passages, passage_of);
     put_lines(out, "pillars", world.pillars, pillar_of);

@@ -150,6 +150,9 @@ ordered_json row_of(const MineSet& set, const Mine& m, const World& world) {
   row["blocked"] =
       std::count_if(world.passages.begin(), world.passages.end(), [](const Passage& p) { return p.blocked; });
   row["things"] = world.objects.size();
+  int left_out = 0;
+  for (const auto& [label, n] : world.left_out) left_out += n;
+  row["left_out"] = left_out;
   row["error"] = "";
   return row;
 }
@@ -217,7 +220,7 @@ void write_manifest(const std::string& out, const std::vector<Mine>& mines) {
 std::string card_of(const MineSet& set, const std::vector<Mine>& mines, const std::string& toml) {
   std::map<std::string, int> in_part, plans;
   double length = 0, volume = 0;
-  int failed = 0;
+  int failed = 0, things = 0, left_out = 0;
   for (const Mine& m : mines) {
     if (!m.row.value("error", "").empty()) {
       ++failed;
@@ -227,6 +230,8 @@ std::string card_of(const MineSet& set, const std::vector<Mine>& mines, const st
     ++plans[m.row.value("plan", "")];
     length += m.row.value("passages_m", 0.0);
     volume += m.row.value("volume_m3", 0.0);
+    things += m.row.value("things", 0);
+    left_out += m.row.value("left_out", 0);
   }
   std::ostringstream card;
   card << "# " << set.name << "\n\n" << (set.about.empty() ? "Synthetic room-and-pillar mines." : set.about) << "\n\n";
@@ -234,6 +239,7 @@ std::string card_of(const MineSet& set, const std::vector<Mine>& mines, const st
        << plans.size() << " |\n";
   for (const char* part : parts) card << "| " << part << " | " << in_part[part] << " |\n";
   card << "| passages | " << std::llround(length) << " m |\n| void | " << std::llround(volume) << " m3 |\n";
+  card << "| things | " << things << "; " << left_out << " more were asked for and had no room |\n";
   if (failed > 0) card << "| could not be made | " << failed << ", see `error` in the manifest |\n";
   card << "| licence | " << set.licence << " |\n\n";
   card << "## What it holds\n\nA folder for each mine: `scenario.toml` (every setting; it makes the mine again), "

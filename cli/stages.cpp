@@ -63,6 +63,13 @@ std::string summary(const World& world, size_t triangles) {
          std::to_string(world.numbers.loops) + " loops, void of " + with_unit(world.numbers.volume_m3, "m3", 1);
 }
 
+void note_left_out(const World& world, Console& console) {
+  std::string list;
+  for (const auto& [label, n] : world.left_out)
+    list += (list.empty() ? "" : ", ") + std::to_string(n) + " " + label_name(label);
+  if (!list.empty()) console.note("  asked for, and had no room or lay under a fall: " + list);
+}
+
 }  // namespace
 
 World sound_world(const Scenario& s, const Progress& progress) {
@@ -84,6 +91,7 @@ World Stages::world(const Scenario& s) {
     forget({"recording", "map", "external", "score.json", "report"});
   });
   console_.note(summary(world, world.mesh.face.size()));
+  note_left_out(world, console_);
   return world;
 }
 
@@ -109,6 +117,7 @@ void Stages::world_in_parts(const Scenario& s) {
   });
   timed("plan", [&] { save_plan(out_ + "/world", world); });
   console_.note(summary(world, triangles));
+  note_left_out(world, console_);
   world.mesh = std::move(largest);
   pictures(world);
 }

@@ -62,6 +62,8 @@ void compare(const std::string& mine, const MineSamples& own, Stated& stated) {
   things(Label::water, s.furniture.pools_per_100m);
   things(Label::car, s.furniture.cars_per_100m);
   things(Label::beam, s.furniture.beams_per_100m);
+  things(Label::cavity, s.decay.falls_per_100m);
+  things(Label::scar, s.decay.skins_per_100m);
   things(Label::rubble, s.decay.falls_per_100m * (1 - s.decay.cleared_share));
 }
 

@@ -75,8 +75,19 @@ size_t levels_of(const Factor& f) {
   return f.values.empty() ? static_cast<size_t>(f.steps) : f.values.size();
 }
 
+std::vector<std::string> texts_of(const Factor& f, const std::string& toml) {
+  std::vector<std::string> texts;
+  set_field({{f.key, &texts, ""}}, f.key + "=" + toml);
+  return texts;
+}
+
 void set_level(DesignPoint& point, const Factor& f, const std::string& value, const std::string& label) {
   point.level.push_back(label);
+  if (f.key == "set") {
+    const std::vector<std::string> changes = texts_of(f, value);
+    point.changes.insert(point.changes.end(), changes.begin(), changes.end());
+    return;
+  }
   if (!f.key.starts_with("rig.")) {
     point.changes.push_back(f.key + "=" + value);
     return;

@@ -23,7 +23,7 @@ Fields fields(MountSearch& m) {
 }
 
 Fields fields(Factor& f) {
-  return {{"key", &f.key, "of the scenario, or rig.LASER.KEY"},
+  return {{"key", &f.key, "of the scenario, rig.LASER.KEY, or set: lists of key=value of the scenario"},
           {"name", &f.name, "how results call it"},
           {"labels", &f.labels, "of the values"},
           {"from", &f.from, "of a range"},
@@ -55,7 +55,7 @@ void check_factor(const Document& table, const Factor& f, const Study& study) {
 void check_levels(const Study& study, const Document& file) {
   std::set<std::string> seen;
   for (const Factor& f : study.factor) {
-    if (!seen.insert(f.key).second) throw Error(file.name() + ": two factors have the key '" + f.key + "'");
+    if (!seen.insert(f.key).second && f.key != "set") throw Error(file.name() + ": two factors have the key '" + f.key + "'");
     Study alone = study;
     alone.sample = "grid";
     alone.factor = {f};

@@ -14,7 +14,8 @@ namespace adit {
 
 /// One thing that a study varies. Tables [[factor]].
 struct Factor {
-  std::string key;                  // of the scenario, or rig.LASER.KEY of a mount (x_m, pitch_deg, model, ...)
+  std::string key;                  // of the scenario, or rig.LASER.KEY of a mount (x_m, pitch_deg, model, ...);
+                                    // set: each value is a list of key=value of the scenario
   std::string name;                 // how results call it; empty: the key
   std::vector<std::string> values;  // TOML each; or a range:
   double from = 0, to = 0;

@@ -118,7 +118,7 @@ TrueSection true_section(const Grid& grid, const Pose& X_WM, const TrueScans& sc
           if (!a.met) continue;
           const Label label = mesh.label.empty() ? Label::rib : mesh.label[static_cast<size_t>(a.face)];
           const Vec2 end = in_cells(a.end());
-          if (!is_ground(label) && label != Label::roof && label != Label::water)
+          if (!is_ground(label) && !is_roof(label) && label != Label::water)
             raise(s.cell[s.index(static_cast<int>(end.x()), static_cast<int>(end.y()))], CellTruth::wall);
           if (k + 1 == fan.size() || !fan[k + 1].met) continue;
           const TrueBeam& b = fan[k + 1];

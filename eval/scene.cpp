@@ -21,7 +21,7 @@ namespace {
 
 // Bodies have sharp edges, and what fell lies in pieces.
 bool creased(Label label) {
-  return label == Label::rubble || label == Label::talus || is_object(label);
+  return is_numbered(label) || label == Label::talus;
 }
 bool round(Label label) {
   return label == Label::post || label == Label::pipe || label == Label::cable || label == Label::water;
@@ -90,6 +90,9 @@ Colour thing_colour(Label label) {
       return rgb(0xc98a2b);
     case Label::talus:
       return rgb(0x4d4a49);
+    case Label::cavity:
+    case Label::scar:
+      return rgb(0x5c534e);  // fresh rock, no dust
     case Label::rubble:
       return rgb(0x6d6863);
     default:

@@ -211,7 +211,7 @@ namespace {
 
 size_t side_of(const Mesh& mesh, size_t face) {
   if (mesh.label.empty()) return 2;
-  return mesh.label[face] == Label::floor ? 0 : mesh.label[face] == Label::roof ? 1 : 2;
+  return mesh.label[face] == Label::floor ? 0 : is_roof(mesh.label[face]) ? 1 : 2;
 }
 
 // A direction without its components below `slope`.

@@ -62,7 +62,7 @@ std::vector<Face> faces_of(const Mesh& mesh, const Clusters& clusters, size_t& r
     const std::uint64_t key =
         static_cast<std::uint64_t>(face[0]) << 42 | static_cast<std::uint64_t>(face[1]) << 21 | face[2];
     if (!seen.insert(key).second) continue;
-    (label_of(mesh, f) == Label::roof ? above : rest).push_back(face);
+    (is_roof(label_of(mesh, f)) ? above : rest).push_back(face);
   }
   roof = rest.size();
   rest.insert(rest.end(), above.begin(), above.end());

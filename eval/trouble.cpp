@@ -69,7 +69,7 @@ Picture trouble_picture(const World& world, const Drive& drive, const Hull& hull
     scene.skins.push_back(skin_of(
         world.mesh, [](std::uint32_t, Label label) { return label == Label::floor ? rgb(0xa89c8c) : rgb(0x7d7a78); },
         [&](size_t f) {
-          return label_of(world.mesh, f) != Label::roof && (world.mesh.corner(f, 0) - place).head<2>().norm() < reach_m;
+          return !is_roof(label_of(world.mesh, f)) && (world.mesh.corner(f, 0) - place).head<2>().norm() < reach_m;
         }));
     scene.skins.back().sides = Skin::Sides::inner;
     scene.skins.back().rock = 0.6f;

@@ -24,7 +24,7 @@ Skin error_skin(const Exhibit& x, double stretch, double z0_m, const Near& near)
 Dots error_dots(const Exhibit& x, bool with_roof, double stretch, double z0_m, const Near& near) {
   Dots dots;
   for (size_t k = 0; k < x.point_W.size(); ++k) {
-    if (!with_roof && x.point_label[k] == Label::roof) continue;
+    if (!with_roof && is_roof(x.point_label[k])) continue;
     const Vec3& p = x.point_W[k];
     if (!p.allFinite() || (near && !near(p))) continue;
     dots.p.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()),
@@ -213,7 +213,7 @@ Figure coverage_view(const Exhibit& x) {
   const auto skin_of_faces = [&](bool roof) {
     Skin skin;
     for (size_t f = 0; f < mesh.face.size(); ++f) {
-      if ((label_of(mesh, f) == Label::roof) != roof) continue;
+      if (is_roof(label_of(mesh, f)) != roof) continue;
       const Colour c = hits[f] == 0 ? unseen : ramp.colour(std::log2(1.0 + hits[f]));
       const Eigen::Vector3f n = mesh.normal(f).cast<float>();
       const auto first = static_cast<std::uint32_t>(skin.p.size());

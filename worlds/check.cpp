@@ -203,8 +203,8 @@ void MeshTally::add(const Mesh& mesh, const Vec3& origin) {
       nameless += mesh.passage[f] < 0;
     }
     if (f >= mesh.part.size() || mesh.label.empty()) continue;
-    const bool thing = is_object(label) || label == Label::rubble;
-    const bool level = is_ground(label) || label == Label::roof;
+    const bool thing = is_numbered(label);
+    const bool level = is_ground(label) || is_roof(label);
     int& highest = thing ? objects : level ? passages : pillars;
     highest = std::max(highest, mesh.part[f] + 1);
     nameless += mesh.part[f] < (thing || level ? 0 : -1);

@@ -269,6 +269,14 @@ double Fall::reach_m() const {
   return std::max(half_along_m, half_along_m - half_across_m + (heap_m > 0 ? heap_m / repose : 0)) + 0.5;
 }
 
+bool Fall::buried(const Vec2& p) const {
+  if (heap_m <= 0) return false;
+  const Vec2 w = p - middle;
+  const double reach = reach_m();
+  if (w.squaredNorm() > reach * reach) return false;
+  return std::hypot(w.dot(along) / half_along_m, w.dot(turned(along)) / half_across_m) < 1 || rubble_m(p) > 0.05;
+}
+
 // Nearest of points scattered over squares: each stone has its own height and lean.
 double stones_m(const Vec2& p, std::uint64_t seed) {
   constexpr double gap_m = 0.55;

@@ -24,6 +24,15 @@ struct Fall {
   double cavity_m(const Vec2& p, double depth_m) const;
   double rubble_m(const Vec2& p) const;  // without its stones
   double reach_m() const;                // from the middle
+  /// Whether what stood or hung there came down with the roof, or lies under rubble that was not loaded out.
+  bool buried(const Vec2& p) const;
+  Label hollow() const { return skin ? Label::scar : Label::cavity; }
+};
+
+/// A fall with the numbers, among the mine's objects, of its rubble (-1: loaded out, none) and of what it left of the roof.
+struct NumberedFall {
+  Fall fall;
+  int rubble, hollow;
 };
 
 /// Something across a passage that no vehicle gets past.

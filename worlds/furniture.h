@@ -7,6 +7,8 @@
 #include "worlds/space.h"
 
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 namespace adit {
@@ -20,8 +22,12 @@ struct FurniturePlan {
   std::uint64_t seed;
 };
 
+/// How many things chance asked for: of a passage, with a label.
+using Asked = std::map<std::pair<size_t, Label>, int>;
+
 /// Fits out the part of a mine that a space shows: of the passages named, what lies wholly in it. What has no room is left
 /// out. Every thing has its own random address, so that tiles do not matter but for what stands across their cuts.
-void furnish(const FurniturePlan& plan, const std::vector<size_t>& passages, Space& space);
+/// @return  what was asked for in the passages named, wherever in the mine it lies
+Asked furnish(const FurniturePlan& plan, const std::vector<size_t>& passages, Space& space);
 
 }  // namespace adit

@@ -293,26 +293,35 @@ class Builder {
         grain);
     for (const auto& f : ground.face) {
       const int passage = passage_at(outline_, (ground.vertex[f[0]] + ground.vertex[f[1]] + ground.vertex[f[2]]) / 3);
-      const auto [lies, fall] = terrain_.ground((ground.vertex[f[0]] + ground.vertex[f[1]] + ground.vertex[f[2]]) / 3);
-      add_face(f[0], f[2], f[1], lies, fall >= 0 ? fall : passage, passage);
-      if (fall >= 0) {
-        Shell::Heap& heap = shell_.heaps[fall];
-        heap.volume_m3 += rubble_over(f, ground);
-        for (std::uint32_t v : f) {
-          heap.low = heap.low.cwiseMin(vertex[v]);
-          heap.high = heap.high.cwiseMax(vertex[v]);
-        }
-      }
-      add_face(n_ + f[0], n_ + f[1], n_ + f[2], Label::roof, passage, passage);
+      const Vec2 middle = (ground.vertex[f[0]] + ground.vertex[f[1]] + ground.vertex[f[2]]) / 3;
+      const auto [lies, heap] = terrain_.ground(middle);
+      const auto [hangs, hollow] = terrain_.ceiling(middle);
+      add_face(f[0], f[2], f[1], lies, heap >= 0 ? heap : passage, passage);
+      add_face(n_ + f[0], n_ + f[1], n_ + f[2], hangs, hollow >= 0 ? hollow : passage, passage);
+      if (heap >= 0)
+        add_to_piece(heap, f, 0, lifted_m3(f, ground, [&](const Vec2& p) { return terrain_.rubble_m(p); }));
+      if (hollow >= 0)
+        add_to_piece(hollow, f, n_, lifted_m3(f, ground, [&](const Vec2& p) { return terrain_.hollow_m(p); }));
       volume_m3_[passage] += prism_m3(f[0], f[1], f[2]);
     }
   }
 
-  double rubble_over(const std::array<std::uint32_t, 3>& f, const PlanMesh& ground) const {
+  // A triangle of the plan becomes a part of a piece, as it is on the floor (over = 0) or on the roof (over = n).
+  void add_to_piece(int number, const std::array<std::uint32_t, 3>& f, std::uint32_t over, double volume_m3) {
+    Shell::Piece& piece = shell_.pieces[number];
+    piece.volume_m3 += volume_m3;
+    for (std::uint32_t v : f) {
+      piece.low = piece.low.cwiseMin(shell_.mesh.vertex[over + v]);
+      piece.high = piece.high.cwiseMax(shell_.mesh.vertex[over + v]);
+    }
+  }
+
+  template <class F>
+  static double lifted_m3(const std::array<std::uint32_t, 3>& f, const PlanMesh& ground, const F& lift_m) {
     const Vec2 &a = ground.vertex[f[0]], u = ground.vertex[f[1]] - a, w = ground.vertex[f[2]] - a;
-    double lies = 0;
-    for (std::uint32_t v : f) lies += terrain_.rubble_m(ground.vertex[v]) / 3;
-    return 0.5 * (u.x() * w.y() - u.y() * w.x()) * lies;
+    double mean = 0;
+    for (std::uint32_t v : f) mean += lift_m(ground.vertex[v]) / 3;
+    return 0.5 * (u.x() * w.y() - u.y() * w.x()) * mean;
   }
 
   // Vertex of row r at column k of a run whose first column is rim point `first` and whose rows between begin at `base`.

@@ -20,11 +20,11 @@ struct Shell {
   /// cut's left end, the same of its right end, then floor and roof of the points between from left to right.
   std::map<int, std::vector<std::uint32_t>> seams;
   size_t levels = 0;  // faces 2 k and 2 k + 1 are floor and roof over triangle k of the plan, for k < levels
-  struct Heap {
-    double volume_m3 = 0;  // by how much it lifts the floor's faces
+  struct Piece {
+    double volume_m3 = 0;  // by how much it lifts the floor's faces, or those of the roof
     Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
   };
-  std::map<int, Heap> heaps = {};  // by the number of their fall
+  std::map<int, Piece> pieces = {};  // rubble, cavities, scars, by their numbers
 };
 
 /// What of a mine is the same for all of its tiles.

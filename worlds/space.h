@@ -3,7 +3,7 @@
 
 #include "base/world.h"
 #include "rays/caster.h"
-#include "worlds/solid.h"
+#include "worlds/plan_grid.h"
 
 #include <map>
 #include <optional>
@@ -46,16 +46,6 @@ class Space {
   void append_to(Mesh& mesh, int first) const;
 
  private:
-  struct Grid {
-    Vec2 low = Vec2::Zero();
-    double cell_m = 0.5;
-    long nx = 0, ny = 0;
-    std::vector<std::uint32_t> begin, item;
-    template <class F>
-    void build(const Vec2& from, const Vec2& to, double cell, size_t n, const F& box_of);
-    template <class F>
-    void for_near(const Vec2& from, const Vec2& to, const F& f) const;
-  };
   struct Placed {
     Solid body;
     Vec3 low, high;
@@ -77,7 +67,7 @@ class Space {
       next_;                       // (levels) beyond side c of a triangle, -1 none; made when asked for
   mutable std::vector<char> rim_;  // (vertices of the roof) at the ribs
   Caster caster_;
-  Grid plan_, faces_;  // triangles of the plan; faces
+  PlanGrid plan_, faces_;  // triangles of the plan; faces
   std::vector<Placed> placed_;
   std::map<std::pair<long, long>, std::vector<std::uint32_t>> placed_at_;
   std::vector<MineObject> objects_;

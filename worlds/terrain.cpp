@@ -13,6 +13,7 @@ constexpr int roll_count = 12;
 
 constexpr double cleat_length_m = 4;                           // over which a rib keeps to one joint
 constexpr std::uint64_t cleat_joint = std::uint64_t{7} << 32;  // beyond the addresses of the fields
+constexpr double told_m = 0.04;   // what fell, or fell from, is told by its label from this height on
 constexpr double full_sag_m = 1;  // from the ribs: where sag and heave reach their full height
 
 // A field of unit variance whose values are all but normal.
@@ -47,7 +48,7 @@ Waves rough(const RoughnessSettings& r, double edge_m, std::uint64_t seed, std::
 }  // namespace
 
 Terrain::Terrain(const WorldSettings& s, const Vec2& middle, const Lattice& depth, std::uint64_t seed,
-                 std::vector<std::pair<int, Fall>> falls)
+                 std::vector<NumberedFall> falls)
     : mean_height_(s.height_m),
       roll_amplitude_(s.roll_m * std::sqrt(2.0 / roll_count)),
       mean_reflectivity_(s.reflectivity),
@@ -102,23 +103,27 @@ double Terrain::across(const Vec2& p) const {
   return s * (2 - s);
 }
 // Cavities of falls that meet are one.
-double Terrain::cavity_m(const Vec2& p) const {
+double Terrain::hollow_m(const Vec2& p, int* number, Label* label) const {
   double height = 0;
-  for (const auto& [id, fall] : falls_)
-    if ((p - fall.middle).squaredNorm() <
-        fall.half_along_m * fall.half_along_m + fall.half_across_m * fall.half_across_m)
-      height = std::max(height, fall.cavity_m(p, depth_.at(p)));
+  for (const auto& [f, rubble, hollow] : falls_) {
+    if ((p - f.middle).squaredNorm() >= f.half_along_m * f.half_along_m + f.half_across_m * f.half_across_m) continue;
+    const double here = f.cavity_m(p, depth_.at(p));
+    if (here <= height) continue;
+    height = here;
+    if (number) *number = hollow;
+    if (label) *label = f.hollow();
+  }
   return height;
 }
-double Terrain::rubble_m(const Vec2& p, int* fall) const {
+double Terrain::rubble_m(const Vec2& p, int* number) const {
   double height = 0;
-  for (const auto& [id, f] : falls_) {
+  for (const auto& [f, rubble, hollow] : falls_) {
     const double reach = f.reach_m();
     if (f.heap_m <= 0 || (p - f.middle).squaredNorm() > reach * reach) continue;
     const double here = f.rubble_m(p);
     if (here <= height) continue;
     height = here;
-    if (fall) *fall = id;
+    if (number) *number = rubble;
   }
   if (height <= 0) return 0;
   return std::max(0.0, height + std::min(1.0, height / 0.4) * stones_m(p, seed_));
@@ -132,12 +137,18 @@ double Terrain::talus_m(const Vec2& p) const {
   return std::max(0.0, talus_most_m_ * cover(slough_(p), slough_below_, 0.8) - repose * behind);
 }
 std::pair<Label, int> Terrain::ground(const Vec2& p) const {
-  constexpr double told_m = 0.04;
-  int fall = -1;
-  if (!falls_.empty() && rubble_m(p, &fall) > told_m) return {Label::rubble, fall};
+  int number = -1;
+  if (!falls_.empty() && rubble_m(p, &number) > told_m) return {Label::rubble, number};
   if (talus_m(p) > told_m) return {Label::talus, -1};
   if (sludge_share_ > 0 && sludge_(p) < sludge_below_) return {Label::sludge, -1};
   return {Label::floor, -1};
+}
+
+std::pair<Label, int> Terrain::ceiling(const Vec2& p) const {
+  int number = -1;
+  Label label = Label::roof;
+  if (falls_.empty() || hollow_m(p, &number, &label) <= told_m) return {Label::roof, -1};
+  return {label, number};
 }
 
 double Terrain::floor_z(const Vec2& p) const {
@@ -153,7 +164,7 @@ double Terrain::roof_z(const Vec2& p) const {
   if (wear_.sag_m > 0) z -= wear_.sag_m * across(p) * smooth_step(0.5 + 0.5 * sag_(p));
   // Steps that are as steep as two edges of the mesh.
   if (wear_.bedding_m > 0) z += wear_.bedding_m * smooth_step(0.5 + 4 * (bedding_(p) - 0.7));
-  if (!falls_.empty()) z += cavity_m(p);
+  if (!falls_.empty()) z += hollow_m(p);
   return z;
 }
 
@@ -190,8 +201,8 @@ Rock Terrain::rock(const Vec3& p, Label label) const {
   const double dust = bare ? cover(dust_(p), dust_below_, 0.6) : 1;
   if (label == Label::sludge)
     return {Material::mud, static_cast<float>(std::clamp(0.25 * (1 + patch / mean_reflectivity_), 0.02, 1.0)), 0.8f};
-  const bool broken = label == Label::rubble || label == Label::talus;  // fell when the dust was down
-  const bool floor = label == Label::floor, roof = label == Label::roof || label == Label::rubble;
+  const bool broken = label != Label::roof && (is_roof(label) || label == Label::rubble || label == Label::talus);
+  const bool floor = label == Label::floor, roof = is_roof(label) || label == Label::rubble;
   const Material under = floor                 ? Material::fireclay
                          : roof                ? Material::shale
                          : label == Label::cap ? Material::block
@@ -202,7 +213,7 @@ Rock Terrain::rock(const Vec3& p, Label label) const {
     // Water runs down: of the floor more is wet than of the ribs, of those more than of the roof.
     wet = cover(water_(p), wet_below_[floor ? 0 : roof ? 2 : 1], 0.8);
   }
-  if (broken) {
+  if (broken) {  // after the dust was laid
     const double seen = own * (1 + patch / mean_reflectivity_) * (1 - 0.5 * wet);
     return {under, static_cast<float>(std::clamp(seen, 0.02, 1.0)), static_cast<float>(wet)};
   }

@@ -5,6 +5,7 @@
 #include "worlds/drift.h"
 #include "worlds/furniture.h"
 #include "worlds/outline.h"
+#include "worlds/pieces.h"
 #include "worlds/plan.h"
 #include "worlds/polygons.h"
 #include "worlds/shell.h"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 namespace adit {
 namespace {
@@ -239,36 +241,14 @@ bool furnished(const FurnitureSettings& f) {
   return false;
 }
 
-// The falls that reach into a frame, with the ids of their rubble among the objects; -1 where it was loaded out.
-std::vector<std::pair<int, Fall>> falls_in(const std::vector<Fall>& falls, const Frame2& frame) {
-  std::vector<std::pair<int, Fall>> near;
-  int id = 0;
-  for (const Fall& f : falls) {
-    const int own = f.heap_m > 0 ? id++ : -1;
-    if (frame.meets({f.middle, f.middle}, f.reach_m() + 1)) near.emplace_back(own, f);
-  }
-  return near;
-}
-
-// The rubble of the falls, as objects whose sizes are to follow.
-std::vector<MineObject> heaps_of(const std::vector<Fall>& falls) {
-  std::vector<MineObject> heaps;
-  for (const Fall& f : falls)
-    if (f.heap_m > 0)
-      heaps.push_back({Label::rubble, f.passage, {f.middle.x(), f.middle.y(), 0}, Vec3::Zero(), 0, 0, true, true});
-  return heaps;
-}
-
-// A heap grows by what of it lies in another tile.
-void grow(MineObject& heap, const Shell::Heap& more) {
-  Vec3 low = more.low, high = more.high;
-  if (heap.volume_m3 > 0) {
-    low = low.cwiseMin(heap.middle_W - 0.5 * heap.size_m);
-    high = high.cwiseMax(heap.middle_W + 0.5 * heap.size_m);
-  }
-  heap.middle_W = 0.5 * (low + high);
-  heap.size_m = high - low;
-  heap.volume_m3 += more.volume_m3;
+// Of what was asked for, what does not stand.
+std::map<Label, int> without_room(const Asked& asked, const std::vector<MineObject>& objects) {
+  std::map<Label, int> left;
+  for (const auto& [which, n] : asked) left[which.second] += n;
+  for (const MineObject& o : objects)
+    if (const auto found = left.find(o.label); found != left.end()) --found->second;
+  std::erase_if(left, [](const auto& of) { return of.second <= 0; });
+  return left;
 }
 
 // Those that lie in a tile or reach into it.
@@ -311,8 +291,10 @@ World make_parts(const WorldSettings& given, std::uint64_t seed, const std::func
   World world;
   world.name = s.kind == "plan" ? s.plan : s.kind;
   world.passages.resize(plan.passages.size());
-  world.objects = heaps_of(decay.falls);
+  std::vector<NumberedFall> falls;
+  std::tie(world.objects, falls) = pieces_of(decay.falls);
   std::vector<char> blocked = decay.blocked;
+  Asked asked;
   std::vector<double> volume_m3(plan.passages.size(), 0.0);
   std::vector<Loop> mid_height;
   for (const Loop& rib : tiling.ribs) mid_height.emplace_back(rib.size());
@@ -325,14 +307,16 @@ World make_parts(const WorldSettings& given, std::uint64_t seed, const std::func
     for (size_t p : tile.passages)
       for (const Vec2& q : workings.drifts()[p].line) seen.add(q);
     const Outline outline = tiling.tiles.size() == 1 ? workings.whole() : workings.window(seen);
-    const Terrain terrain(s, middle, outline.depth, seed, falls_in(decay.falls, seen));
+    const Terrain terrain(s, middle, outline.depth, seed, falls_in(falls, seen));
     const Faces faces = faces_in(tile.frame, ends, workings.walls());
     Shell shell = make_shell({tiling, workings, faces, s.mesh_edge_m, rows_of(s.height_m, s.mesh_edge_m), seed}, tile,
                              outline, terrain, volume_m3, mid_height);
-    for (const auto& [fall, heap] : shell.heaps) grow(world.objects[static_cast<size_t>(fall)], heap);
+    for (const auto& [number, piece] : shell.pieces) grow(world.objects[static_cast<size_t>(number)], piece);
     if (furnished(s.furniture) && shell.levels > 0) {
       Space space(shell.mesh, shell.levels);
-      furnish({s, plan, workings.drifts(), decay, seed}, passages_of(tiling, t), space);
+      // A passage that reaches into several tiles is asked for from each.
+      for (const auto& [which, n] : furnish({s, plan, workings.drifts(), decay, seed}, passages_of(tiling, t), space))
+        asked[which] = std::max(asked[which], n);
       space.append_to(shell.mesh, static_cast<int>(world.objects.size()));
       for (const MineObject& o : space.objects()) {
         volume_m3[static_cast<size_t>(o.passage)] -= o.volume_m3;
@@ -355,6 +339,7 @@ World make_parts(const WorldSettings& given, std::uint64_t seed, const std::func
   }
   world.numbers.volume_m3 = tally.six_volumes / 6;
   if (!world.objects.empty()) world.numbers.bare_m3 = tally.rock_six_volumes / 6;
+  world.left_out = without_room(asked, world.objects);
   add_junctions(plan, world);
   add_numbers(std::move(mid_height), world);
   return world;

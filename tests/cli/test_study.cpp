@@ -129,10 +129,28 @@ TEST(Study, SamplesOfARangeLieWithinItAndOfWholeNumbersAreWhole) {
 }
 
 TEST(Study, WhatIsWrittenOutIsTheSameStudyAgain) {
-  for (const char* name : {"groundhog", "placements", "quick"}) {
+  for (const char* name : {"decay", "groundhog", "placements", "quick"}) {
     const std::string once = to_toml(load_study(name, {"drive.lead_in_s=1.0"}));
     EXPECT_EQ(to_toml(load_study(file_of(once))), once);
   }
+}
+
+TEST(Study, ALevelOfSetStandsForManyChanges) {
+  const Study s = load_study(
+      file_of("[[factor]]\nkey = \"set\"\nname = \"mine\"\nlabels = [\"bare\", \"low\"]\n"
+              "values = [[], [\"world.height_m=1.6\", \"world.decay.may_cut=true\"]]\n"
+              "[[factor]]\nkey = \"set\"\nvalues = [[\"drive.speed_mps=0.5\"], [\"drive.speed_mps=0.7\"]]\n"));
+  const std::vector<DesignPoint> points = design_of(s);
+  ASSERT_EQ(points.size(), 4u);
+  EXPECT_EQ(points[0].level[0], "bare");
+  EXPECT_EQ(scenario_at(s, points[0], 1).world.height_m, load_scenario("mini").world.height_m);
+  const Scenario low = scenario_at(s, points[3], 1);
+  EXPECT_EQ(low.world.height_m, 1.6);
+  EXPECT_TRUE(low.world.decay.may_cut);
+  EXPECT_EQ(low.drive.speed_mps, 0.7);
+  EXPECT_THAT(error_of("[[factor]]\nkey = \"set\"\nvalues = [[\"world.heigt_m=1.6\"]]\n"),
+              HasSubstr("did you mean 'world.height_m'?"));
+  EXPECT_THAT(error_of("[[factor]]\nkey = \"set\"\nvalues = [3]\n"), HasSubstr("set"));
 }
 
 TEST(Study, FaultsInItsFileNameLineKeyAndWhatWouldBeRight) {

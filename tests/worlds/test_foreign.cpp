@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes and plans in programs that are not ours: each test runs where the program is installed.
 #include "base/files.h"
+#include "base/mine_export.h"
 #include "tests/support/scratch.h"
+#include "worlds/lattice.h"
 #include "worlds/worlds.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <map>
+#include <sstream>
 
 namespace adit {
 namespace {
@@ -96,6 +100,65 @@ TEST(Foreign, AssimpReadsTheSameAreaAndVolumeFromGltf) {
   EXPECT_EQ(again.face.size(), mine.world.mesh.face.size()) << said;
   EXPECT_NEAR(area_of(again), mine.area_m2, relative * mine.area_m2);
   EXPECT_NEAR(enclosed_volume(again), mine.world.numbers.volume_m3, relative * mine.world.numbers.volume_m3);
+}
+
+TEST(Foreign, AssimpReadsTheSameAreaAndVolumeFromObj) {
+  if (!installed("assimp")) GTEST_SKIP() << "assimp is not installed";
+  const Saved& mine = saved();
+  const std::string obj = mine.dir + "/mine.obj", file = mine.dir + "/assimp-obj.ply";
+  write_obj(obj, mine.world, false);
+  const std::string said = said_by("assimp export " + obj + " " + file);
+  const Mesh again = read_mesh(file);
+  EXPECT_EQ(again.face.size(), mine.world.mesh.face.size()) << said;
+  EXPECT_NEAR(area_of(again), mine.area_m2, relative * mine.area_m2);
+  EXPECT_NEAR(enclosed_volume(again), mine.world.numbers.volume_m3, relative * mine.world.numbers.volume_m3);
+}
+
+// Gazebo's own parser. It must refuse what is wrong, else that it accepts ours says nothing.
+TEST(Foreign, SdformatAcceptsTheWorldAndItsModel) {
+  if (!installed("ign") || said_by("ign sdf --versions").find("12.") == std::string::npos)
+    GTEST_SKIP() << "needs ignition-tools and libsdformat-dev: ci/setup --peers";
+  const Saved& mine = saved();
+  const std::string world = mine.dir + "/gazebo/mine.sdf", model = mine.dir + "/gazebo/mine/model.sdf";
+  write_sdf(world, mine.world);
+  const auto verdict = [&](const std::string& file) {
+    return said_by("env SDF_PATH=" + mine.dir + "/gazebo ign sdf -k " + file);
+  };
+  EXPECT_NE(verdict(model).find("Valid."), std::string::npos) << verdict(model);
+  EXPECT_NE(verdict(world).find("Valid."), std::string::npos) << verdict(world);
+  std::string wrong = read_text(model);
+  wrong.erase(wrong.find(" name=\"rock\""), 12);
+  write_text(mine.dir + "/gazebo/wrong.sdf", wrong);
+  EXPECT_EQ(verdict(mine.dir + "/gazebo/wrong.sdf").find("Valid."), std::string::npos);
+}
+
+TEST(Foreign, GdalReadsTheLayersOfTheDxf) {
+  if (!installed("ogr2ogr")) GTEST_SKIP() << "ogr2ogr is not installed";
+  const Saved& mine = saved();
+  const std::string said =
+      said_by("ogr2ogr -f CSV /vsistdout/ " + mine.dir + "/plan.dxf -select Layer -lco GEOMETRY=AS_WKT");
+  std::map<std::string, size_t> found;
+  double pillars_m2 = 0;
+  std::istringstream lines(said);
+  for (std::string line; std::getline(lines, line);) {
+    const size_t name = line.rfind(',') + 1;
+    ++found[line.substr(name)];
+    if (line.substr(name) != "PILLARS") continue;
+    Loop ring;
+    std::string numbers = line.substr(line.find('(') + 1);
+    for (char& c : numbers)
+      if (std::string("(),").find(c) != std::string::npos) c = ' ';
+    std::istringstream in(numbers);
+    for (double x, y, z; in >> x >> y >> z;) ring.emplace_back(x, y);
+    pillars_m2 += std::abs(enclosed_area(ring));
+  }
+  EXPECT_EQ(found["VOID"], 1u) << said.substr(0, 300);
+  EXPECT_EQ(found["PILLARS"], mine.world.pillars.size());
+  EXPECT_EQ(found["CENTRE_LINES"], mine.world.passages.size());
+  EXPECT_EQ(found["JUNCTIONS"], mine.world.junctions.size());
+  double expected = 0;
+  for (const Pillar& p : mine.world.pillars) expected += p.area_m2;
+  EXPECT_NEAR(pillars_m2, expected, 1e-4 * expected);  // coordinates to a millimetre
 }
 
 // ADIT_GLTF_VALIDATOR: a folder in which `npm install gltf-validator` was run (Khronos's own validator).

@@ -215,6 +215,97 @@ TEST(Decay, RubbleLiesLooserThanItWasAndNoSteeperThanItsRepose) {
   EXPECT_EQ(f.rubble_m({0, 1.5 / f.repose + 0.01}), 0);
 }
 
+// Low and high corner of the faces of each object that is a part of the rock's surface.
+std::map<int, std::pair<Vec3, Vec3>> boxes_of(const Mesh& mesh, Label label) {
+  std::map<int, std::pair<Vec3, Vec3>> boxes;
+  for (size_t f = 0; f < mesh.face.size(); ++f) {
+    if (mesh.label[f] != label) continue;
+    auto& [low, high] = boxes.try_emplace(mesh.part[f], mesh.corner(f, 0), mesh.corner(f, 0)).first->second;
+    for (int k = 0; k < 3; ++k) low = low.cwiseMin(mesh.corner(f, k)), high = high.cwiseMax(mesh.corner(f, k));
+  }
+  return boxes;
+}
+
+TEST(Decay, WhatFellAndWhereItFellFromBearTheirLabelsAndNumbers) {
+  WorldSettings s = full(0.35);
+  s.condition = "bare";
+  s.furniture = {};
+  s.decay.falls_per_100m = 3;
+  s.decay.skins_per_100m = 3;
+  std::map<Label, size_t> seen;
+  for (const double tile_m : {0.0, 60.0}) {
+    s.tile_m = tile_m;
+    const World world = make_world(s, 1);
+    EXPECT_TRUE(check_truth(world).empty()) << check_truth(world).front();
+    EXPECT_EQ(world.numbers.bare_m3, world.numbers.volume_m3);  // no bodies among them
+    for (Label label : {Label::rubble, Label::cavity, Label::scar})
+      for (const auto& [id, box] : boxes_of(world.mesh, label)) {
+        const MineObject& o = world.objects.at(static_cast<size_t>(id));
+        ++seen[label];
+        EXPECT_EQ(o.label, label);
+        EXPECT_TRUE(o.ground);
+        EXPECT_GT(o.volume_m3, 0);
+        EXPECT_LT((o.middle_W - 0.5 * o.size_m - box.first).norm(), 1e-9) << label_name(label) << ' ' << id;
+        EXPECT_LT((o.middle_W + 0.5 * o.size_m - box.second).norm(), 1e-9) << label_name(label) << ' ' << id;
+      }
+  }
+  EXPECT_GT(seen[Label::rubble], 1u);
+  EXPECT_GT(seen[Label::cavity], 1u);
+  EXPECT_GT(seen[Label::scar], 1u);
+}
+
+TEST(Decay, NothingThatStoodBeforeAFallIsOnItsRubble) {
+  WorldSettings s = full(0.5);
+  s.decay.falls_per_100m = 5;
+  s.decay.cleared_share = 0;
+  s.furniture.track_share = s.furniture.post_share = s.furniture.bolt_share = 1;
+  const World world = make_world(s, 1);
+  std::vector<Vec2> deep;  // where rubble lies 0.3 m and more over its lowest
+  for (size_t f = 0; f < world.mesh.face.size(); ++f) {
+    if (world.mesh.label[f] != Label::rubble) continue;
+    const MineObject& heap = world.objects[static_cast<size_t>(world.mesh.part[f])];
+    const Vec3 p = (world.mesh.corner(f, 0) + world.mesh.corner(f, 1) + world.mesh.corner(f, 2)) / 3;
+    if (p.z() > heap.middle_W.z() - 0.5 * heap.size_m.z() + 0.3) deep.emplace_back(p.head<2>());
+  }
+  EXPECT_GT(deep.size(), 50u);
+  size_t looked = 0;
+  for (const MineObject& o : world.objects) {
+    if (o.label != Label::rail && o.label != Label::tie && o.label != Label::post && o.label != Label::bolt) continue;
+    ++looked;
+    for (const Vec2& p : deep) EXPECT_GT((p - o.middle_W.head<2>()).norm(), 0.25) << label_name(o.label);
+  }
+  EXPECT_GT(looked, 50u);
+}
+
+// Chance asks for the same things however wide a passage is and however the mine is made.
+TEST(Furniture, WhatHasNoRoomIsTold) {
+  WorldSettings s = full(0.5);
+  s.condition = "bare";
+  s.furniture = {};
+  s.furniture.belt_share = 1;
+  s.furniture.post_share = 1;
+  const auto count = [](const World& world, Label label) {
+    return static_cast<int>(std::count_if(world.objects.begin(), world.objects.end(),
+                                          [&](const MineObject& o) { return o.label == label; }));
+  };
+  const auto left_out = [](const World& world, Label label) {
+    const auto found = world.left_out.find(label);
+    return found == world.left_out.end() ? 0 : found->second;
+  };
+  const World wide = make_world(s, 1);
+  EXPECT_GT(count(wide, Label::belt), 0);
+  s.tile_m = 60;
+  const World tiled = make_world(s, 1);
+  for (const Label label : {Label::belt, Label::post})
+    EXPECT_EQ(count(wide, label) + left_out(wide, label), count(tiled, label) + left_out(tiled, label))
+        << label_name(label);
+  s.tile_m = 0;
+  s.panel.width_m = 3.7;
+  const World narrow = make_world(s, 1);
+  EXPECT_EQ(count(narrow, Label::belt), 0);
+  EXPECT_GT(left_out(narrow, Label::belt), 10);
+}
+
 TEST(Condition, WhatIsSetIsKeptAndTheRestFollowsTheCondition) {
   WorldSettings s;
   s.condition = "abandoned";
