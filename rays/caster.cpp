@@ -204,30 +204,32 @@ void Caster::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
 
 namespace {
 
-// 16 rays from place `at` on: those themselves, or of fewer the last one again.
+// Sixteen numbers from and into columns, mostly whole: a copy of a known length is a few registers, others are calls.
+template <class T>
+void take(T* lanes, const std::vector<T>& column, size_t at) {
+  const size_t n = std::min<size_t>(16, column.size() - at);
+  if (n == 16) return void(std::copy_n(column.data() + at, 16, lanes));
+  std::copy_n(column.data() + at, n, lanes);
+  std::fill(lanes + n, lanes + 16, lanes[n - 1]);
+}
+template <class T>
+void put(const T* lanes, size_t n, std::vector<T>& column, size_t at) {
+  if (n == 16) return void(std::copy_n(lanes, 16, column.data() + at));
+  std::copy_n(lanes, n, column.data() + at);
+}
+
 struct Sixteen {
-  const double *x, *y, *z, *dx, *dy, *dz;
-  double spare[6][16];
+  alignas(64) double x[16], y[16], z[16], dx[16], dy[16], dz[16];
 
   Sixteen(const RayColumns<double>& rays, size_t at) {
-    const std::vector<double>* columns[] = {&rays.x, &rays.y, &rays.z, &rays.dx, &rays.dy, &rays.dz};
-    const double** places[] = {&x, &y, &z, &dx, &dy, &dz};
-    const size_t n = rays.size() - at;
-    for (size_t i = 0; i < 6; ++i) {
-      *places[i] = columns[i]->data() + at;
-      if (n >= 16) continue;
-      std::copy_n(*places[i], n, spare[i]);
-      std::fill(spare[i] + n, spare[i] + 16, spare[i][n - 1]);
-      *places[i] = spare[i];
-    }
+    take(x, rays.x, at), take(y, rays.y, at), take(z, rays.z, at);
+    take(dx, rays.dx, at), take(dy, rays.dy, at), take(dz, rays.dz, at);
   }
-  Sixteen(const Sixteen&) = delete;
-  Sixteen& operator=(const Sixteen&) = delete;
 };
 
 // The range to the plane in doubles, or that of Embree where the plane is seen edge-on and says nothing; as in refined().
 // Plain loops that the compiler turns into vectors.
-void refine(const Packet& p, const Sixteen& r, const Lanes& l, double* range_m, double* cosine) {
+void refine(const Packet& p, const Sixteen& r, const Lanes& l, double* range_m, double* cosine, std::int32_t* face) {
   for (size_t k = 0; k < 16; ++k) {
     const double slope = l.n[0][k] * r.dx[k] + l.n[1][k] * r.dy[k] + l.n[2][k] * r.dz[k];
     const double way =
@@ -237,6 +239,7 @@ void refine(const Packet& p, const Sixteen& r, const Lanes& l, double* range_m, 
     const bool met = p.met(k);
     range_m[k] = met ? sound : infinity;
     cosine[k] = met ? slope / l.length[k] : 0;
+    face[k] = met ? static_cast<std::int32_t>(p.rays.hit.primID[k]) : -1;
   }
 }
 
@@ -262,10 +265,9 @@ void Caster::nearest(const RayColumns<double>& rays, HitColumns<double>& hits) c
     impl_->intersect(p);
     impl_->planes_of(p, l);
     alignas(64) double range_m[16], cosine[16];
-    refine(p, r, l, range_m, cosine);
-    std::copy_n(range_m, n, hits.range_m.data() + at);
-    std::copy_n(cosine, n, hits.cosine.data() + at);
-    for (size_t k = 0; k < n; ++k) hits.face[at + k] = p.met(k) ? static_cast<std::int32_t>(p.rays.hit.primID[k]) : -1;
+    alignas(64) std::int32_t face[16];
+    refine(p, r, l, range_m, cosine, face);
+    put(range_m, n, hits.range_m, at), put(cosine, n, hits.cosine, at), put(face, n, hits.face, at);
   }
 }
 
@@ -275,26 +277,23 @@ void Caster::glance(const RayColumns<float>& rays, HitColumns<float>& hits) cons
   for (size_t begin = 0; begin < rays.size(); begin += 16) {
     const size_t n = std::min<size_t>(16, rays.size() - begin);
     p.arm(n, 1e4F);
-    const auto fill = [&](float* lanes, const std::vector<float>& column) {
-      std::copy_n(column.begin() + static_cast<std::ptrdiff_t>(begin), n, lanes);
-      std::fill(lanes + n, lanes + 16, lanes[0]);
-    };
-    fill(p.rays.ray.org_x, rays.x), fill(p.rays.ray.org_y, rays.y), fill(p.rays.ray.org_z, rays.z);
-    fill(p.rays.ray.dir_x, rays.dx), fill(p.rays.ray.dir_y, rays.dy), fill(p.rays.ray.dir_z, rays.dz);
+    take(p.rays.ray.org_x, rays.x, begin), take(p.rays.ray.org_y, rays.y, begin), take(p.rays.ray.org_z, rays.z, begin);
+    take(p.rays.ray.dir_x, rays.dx, begin), take(p.rays.ray.dir_y, rays.dy, begin),
+        take(p.rays.ray.dir_z, rays.dz, begin);
     impl_->intersect(p);
-    alignas(64) float cosine[16];
+    alignas(64) float range_m[16], cosine[16];
+    alignas(64) std::int32_t face[16];
     for (size_t k = 0; k < 16; ++k) {
       // Embree's normal is not of unit length; like ours it looks out of a face that is counter-clockwise.
       const float x = p.rays.hit.Ng_x[k], y = p.rays.hit.Ng_y[k], z = p.rays.hit.Ng_z[k];
       const float along = x * p.rays.ray.dir_x[k] + y * p.rays.ray.dir_y[k] + z * p.rays.ray.dir_z[k];
-      cosine[k] = along / std::sqrt(x * x + y * y + z * z);
-    }
-    for (size_t k = 0; k < n; ++k) {
+      const float whole = along / std::sqrt(x * x + y * y + z * z);
       const bool met = p.met(k);
-      hits.range_m[begin + k] = met ? p.rays.ray.tfar[k] : std::numeric_limits<float>::infinity();
-      hits.cosine[begin + k] = met ? cosine[k] : 0.0F;
-      hits.face[begin + k] = met ? static_cast<std::int32_t>(p.rays.hit.primID[k]) : -1;
+      range_m[k] = met ? p.rays.ray.tfar[k] : std::numeric_limits<float>::infinity();
+      cosine[k] = met ? whole : 0.0F;
+      face[k] = met ? static_cast<std::int32_t>(p.rays.hit.primID[k]) : -1;
     }
+    put(range_m, n, hits.range_m, begin), put(cosine, n, hits.cosine, begin), put(face, n, hits.face, begin);
   }
 }
 

@@ -50,6 +50,7 @@ inline double quotient(double x, double n, double inverse) {
 }
 
 // Sine and cosine of 2 pi v, v in (0, 1), from those of half the angle from -pi / 2 to pi / 2 by Taylor's series.
+template <bool with_sine>
 void sines(const Numbers& v, Numbers& sine, Numbers& cosine) {
   for (size_t k = 0; k < lanes; ++k) {
     const double x = std::numbers::pi * (v[k] - 0.5), q = x * x;
@@ -57,7 +58,7 @@ void sines(const Numbers& v, Numbers& sine, Numbers& cosine) {
     const auto term = [&](double n) {
       const double of_s = n * (n + 1), of_c = n * (n - 1);
       s = 1 - quotient(s * q, of_s, 1 / of_s);
-      c = 1 - quotient(c * q, of_c, 1 / of_c);
+      if (with_sine) c = 1 - quotient(c * q, of_c, 1 / of_c);
     };
     // Written out: the compiler makes no vectors of a loop in a loop.
     term(20), term(18), term(16), term(14), term(12), term(10), term(8), term(6), term(4), term(2);
@@ -69,26 +70,28 @@ void sines(const Numbers& v, Numbers& sine, Numbers& cosine) {
 }
 
 // Box and Muller: two normal numbers of two even ones.
+template <bool with_angle>
 void normals(const Words (&w)[4], Numbers& range, Numbers& angle) {
   Numbers u, v, ln, sine, cosine;
   units(w[0], u);
   units(w[1], v);
   logs(u, ln);
-  sines(v, sine, cosine);
+  sines<with_angle>(v, sine, cosine);
   for (size_t k = 0; k < lanes; ++k) {
     const double r = std::sqrt(-2 * ln[k]);
     range[k] = r * cosine[k];
-    angle[k] = r * sine[k];
+    if (with_angle) angle[k] = r * sine[k];
   }
 }
 
 struct Eight {
   Numbers range = {}, angle = {}, detect, drop;
 
-  Eight(const Draws& draws, std::uint64_t scan, std::uint64_t first, bool normal) {
+  Eight(const Draws& draws, std::uint64_t scan, std::uint64_t first, Normals normal) {
     Words w[4];
     draws.eight_at(scan, first, w);
-    if (normal) normals(w, range, angle);
+    if (normal == Normals::range) normals<false>(w, range, angle);
+    if (normal == Normals::both) normals<true>(w, range, angle);
     units(w[2], detect);
     units(w[3], drop);
   }
@@ -104,14 +107,14 @@ struct Eight {
 
 }  // namespace
 
-void draw_chances(const Draws& draws, std::uint64_t scan, size_t n, bool normal, Chances& c, size_t at) {
+void draw_chances(const Draws& draws, std::uint64_t scan, size_t n, Normals normal, Chances& c, size_t at) {
   size_t k = 0;
   for (; k + lanes <= n; k += lanes) Eight(draws, scan, k, normal).put(lanes, c, at + k);
   if (k < n) Eight(draws, scan, k, normal).put(n - k, c, at + k);
 }
 
 Chance chance_at(const Draws& draws, std::uint64_t scan, std::uint64_t beam) {
-  const Eight e(draws, scan, beam, true);
+  const Eight e(draws, scan, beam, Normals::both);
   return {e.range[0], e.angle[0], e.detect[0], e.drop[0]};
 }
 

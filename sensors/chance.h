@@ -24,11 +24,13 @@ struct Chances {
   Chance operator[](size_t i) const { return {range[i], angle[i], detect[i], drop[i]}; }
 };
 
+/// Which of the normal numbers are asked for; the others become 0.
+enum class Normals { none, range, both };
+
 /// The chance of beams 0 to n - 1 of a scan, into places `at` on: each at its own address, so that any part of them is
 /// the same.
-/// @param draws   of Draw::beam_chance
-/// @param normal  whether range and angle are asked for; else they become 0
-void draw_chances(const Draws& draws, std::uint64_t scan, size_t n, bool normal, Chances& chances, size_t at);
+/// @param draws  of Draw::beam_chance
+void draw_chances(const Draws& draws, std::uint64_t scan, size_t n, Normals normal, Chances& chances, size_t at);
 /// That of one beam.
 Chance chance_at(const Draws& draws, std::uint64_t scan, std::uint64_t beam);
 

@@ -135,7 +135,7 @@ void tell_ordinary(const Some& some, const Device& device, const SensorSettings&
 }  // namespace
 
 void read_axes(const Device& device, const Axes& axes, const SensorSettings& s, const Chances& chances, size_t at,
-               const BeamAddress& first, double on_s, std::vector<Reading>& readings) {
+               const BeamAddress& first, double on_s, Readings& readings) {
   readings.resize(axes.size());
   const bool plain = s.crosstalk <= 0 && s.dust_loss_per_m <= 0 && s.dust_echo_per_m <= 0 && s.counter_mm <= 0 &&
                      !device.varies && std::isfinite(device.model.range_max_m);
@@ -152,15 +152,16 @@ void read_axes(const Device& device, const Axes& axes, const SensorSettings& s, 
       margins(some, device.model, s.dirty_window, margin);
       tell_ordinary(some, device, s, margin, told_m);
     }
+    for (size_t k = 0; k < some.n; ++k) readings.range_m[begin + k] = static_cast<float>(told_m[k]);
+    std::fill_n(&readings.code[begin], some.n, Code::range);
+    std::fill_n(&readings.surfaces[begin], some.n, std::uint8_t{1});
+    std::fill_n(&readings.fault[begin], some.n, std::uint8_t{0});
     for (size_t k = 0; k < some.n; ++k) {
+      if (told_m[k] > 0) continue;
       const size_t beam = begin + k;
-      if (told_m[k] > 0) {
-        readings[beam] = {static_cast<float>(told_m[k]), Code::range, 1, 0};
-        continue;
-      }
       Return met{axes.range_m[beam], axes.power[beam]};
-      readings[beam] = reading(device, {&met, 1}, axes.cosine[beam], s, chances[at + beam],
-                               {first.seed, first.scan, first.beam + beam}, on_s);
+      readings.put(beam, reading(device, {&met, 1}, axes.cosine[beam], s, chances[at + beam],
+                                 {first.seed, first.scan, first.beam + beam}, on_s));
     }
   }
 }

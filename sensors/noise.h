@@ -46,11 +46,24 @@ struct Axes {
   size_t size() const { return range_m.size(); }
 };
 
+/// Readings by their numbers. (beams)
+struct Readings {
+  std::vector<float> range_m;
+  std::vector<Code> code;
+  std::vector<std::uint8_t> surfaces, fault;
+
+  void resize(size_t n) { range_m.resize(n), code.resize(n), surfaces.resize(n), fault.resize(n); }
+  size_t size() const { return range_m.size(); }
+  void put(size_t k, const Reading& r) {
+    range_m[k] = r.range_m, code[k] = r.code, surfaces[k] = r.surfaces, fault[k] = r.fault;
+  }
+};
+
 /// The readings of such a scan, each as reading() has it.
 /// @param chances  of its beams from place `at` on
 /// @param first    of its beam 0
 void read_axes(const Device& device, const Axes& axes, const SensorSettings& settings, const Chances& chances,
-               size_t at, const BeamAddress& first, double on_s, std::vector<Reading>& readings);
+               size_t at, const BeamAddress& first, double on_s, Readings& readings);
 
 /// The rig as it truly is: mounts moved in their own frames by the settings' errors, each laser with a phase of its
 /// own.

@@ -44,8 +44,8 @@ struct Sweep::Shot {
   HitColumns<double> hit;
   // Of the scan that is being told. (beams)
   Axes met;
-  std::vector<Reading> reading;
-  std::vector<std::uint8_t> ghost;  // whether any of a beam was seen in a mirror
+  Readings reading;
+  std::vector<std::uint8_t> ghost;  // where there is water: whether any of a beam was seen in it
   // The rays beside the axes of one scan's beams. (beams x others)
   RayColumns<float> ray;
   HitColumns<float> glance;
@@ -113,7 +113,8 @@ void Sweep::aim(const Aim& aim, double time_s, std::uint64_t scan, size_t at, co
   const size_t beams = aim.beams();
   const LaserModel& m = device_.model;
   const bool noisy = settings_->noise && (m.sigma_m > 0 || m.spot_m > 0 || m.divergence_rad > 0);
-  draw_chances(draws_, scan, beams, noisy || settings_->beam_angle_deg > 0, shot.chance, at);
+  const Normals normal = settings_->beam_angle_deg > 0 ? Normals::both : noisy ? Normals::range : Normals::none;
+  draw_chances(draws_, scan, beams, normal, shot.chance, at);
   for (size_t k = 0; k < beams; ++k) shot.error_rad[k] = settings_->beam_angle_deg * degree * shot.chance.angle[at + k];
   aim.rays(time_s, shot.error_rad, motion, shot.axis, places, bundle_.place.size() > 1 ? &shot.left : nullptr);
 }
@@ -241,35 +242,30 @@ bool Sweep::mirror(const MountFan& fan, size_t beam, size_t at, Shot& shot) cons
 void Sweep::read(const MountFan& fan, size_t at, const Places& places, const BeamAddress& first, double on_s,
                  Shot& shot) const {
   const size_t beams = fan.along.size();
+  const bool spots = bundle_.place.size() > 1;
   Axes& met = shot.met;
-  std::fill(shot.ghost.begin(), shot.ghost.end(), 0);
-  if (bundle_.place.size() > 1) {
-    for (size_t k = 0; k < beams; ++k) {
-      shot.ghost[k] = gather(fan, k, places[k], shot);
-      shot.reading[k] = reading(device_, shot.returns, met.cosine[k], *settings_, shot.chance[at + k],
-                                {first.seed, first.scan, k}, on_s);
-    }
-    return;
+  for (size_t k = 0; (spots || water_) && k < beams; ++k) {
+    shot.ghost[k] = gather(fan, k, places[k], shot) ? trouble::ghost : 0;
+    if (spots)
+      shot.reading.put(k, reading(device_, shot.returns, met.cosine[k], *settings_, shot.chance[at + k],
+                                  {first.seed, first.scan, k}, on_s));
+    else
+      met.range_m[k] = shot.returns[0].range_m, met.power[k] = shot.returns[0].power;
   }
-  for (size_t k = 0; water_ && k < beams; ++k) {
-    shot.ghost[k] = gather(fan, k, places[k], shot);
-    met.range_m[k] = shot.returns[0].range_m, met.power[k] = shot.returns[0].power;
-  }
-  read_axes(device_, met, *settings_, shot.chance, at, first, on_s, shot.reading);
+  if (!spots) read_axes(device_, met, *settings_, shot.chance, at, first, on_s, shot.reading);
+  for (size_t k = 0; water_ && k < beams; ++k) shot.reading.fault[k] |= shot.ghost[k];
 }
 
 void Sweep::tell(const MountFan& fan, size_t at, const Places& places, std::uint64_t scan, size_t row, Shot& shot,
                  Scans& scans, ScanTruth& truth) const {
-  const size_t beams = fan.along.size();
   look_up(fan, places, row, shot, truth);
   read(fan, at, places, {seed_, scan, 0}, settings_->on_s + truth.stamp_s[row] - begin_s_, shot);
-  for (size_t k = 0; k < beams; ++k) {
-    const Reading& r = shot.reading[k];
-    scans.range_m[row * beams + k] = r.range_m;
-    scans.code[row * beams + k] = r.code;
-    truth.surfaces[row * beams + k] = r.surfaces;
-    truth.fault[row * beams + k] = r.fault | (shot.ghost[k] ? trouble::ghost : 0);
-  }
+  const auto to = static_cast<std::ptrdiff_t>(row * fan.along.size());
+  const Readings& r = shot.reading;
+  std::copy(r.range_m.begin(), r.range_m.end(), scans.range_m.begin() + to);
+  std::copy(r.code.begin(), r.code.end(), scans.code.begin() + to);
+  std::copy(r.surfaces.begin(), r.surfaces.end(), truth.surfaces.begin() + to);
+  std::copy(r.fault.begin(), r.fault.end(), truth.fault.begin() + to);
 }
 
 // Daylight falls in where the mine is cut off at a portal.

@@ -47,6 +47,11 @@ Pose pose(const btTransform& t) {
   return X;
 }
 
+// Of the mesh, by Bullet's numbers.
+size_t face_number(int part, int index) {
+  return static_cast<size_t>(part) * part_faces + static_cast<size_t>(index);
+}
+
 // Drops the contacts of a ball that are none: those on edges that a deeper contact's plane already holds up, and those
 // at its flanks, where a wheel has no tread.
 void keep_true_contacts(btPersistentManifold& manifold, const btVector3& axle) {
@@ -73,9 +78,11 @@ void keep_true_contacts(btPersistentManifold& manifold, const btVector3& axle) {
 // The rock, which knows the triangles about the places asked for last: what moves slowly is asked for again and again.
 // Bullet's tree is asked for a box that reaches farther; of what it names, in its order, the triangles that touch the
 // box asked for are handed on, as the tree itself would do.
+// Vehicles go through faces of water: they are not handed on.
 class RockShape : public btBvhTriangleMeshShape {
  public:
-  using btBvhTriangleMeshShape::btBvhTriangleMeshShape;
+  RockShape(btStridingMeshInterface* triangles, const std::vector<Label>& label)
+      : btBvhTriangleMeshShape(triangles, true), label_(label) {}
 
   void processAllTriangles(btTriangleCallback* callback, const btVector3& low, const btVector3& high) const override {
     for (Triangle& t : about(low, high).triangles)
@@ -92,9 +99,11 @@ class RockShape : public btBvhTriangleMeshShape {
     std::vector<Triangle> triangles;
   };
   struct Keep : btTriangleCallback {
+    const std::vector<Label>& label;
     std::vector<Triangle>& into;
-    explicit Keep(std::vector<Triangle>& triangles) : into(triangles) {}
+    Keep(const std::vector<Label>& labels, std::vector<Triangle>& triangles) : label(labels), into(triangles) {}
     void processTriangle(btVector3* corner, int part, int index) override {
+      if (!label.empty() && label[face_number(part, index)] == Label::water) return;
       Triangle t{{corner[0], corner[1], corner[2]}, corner[0], corner[0], part, index};
       for (int k = 1; k < 3; ++k) t.low.setMin(corner[k]), t.high.setMax(corner[k]);
       into.push_back(t);
@@ -115,11 +124,12 @@ class RockShape : public btBvhTriangleMeshShape {
     place.low = low - reach;
     place.high = high + reach;
     place.triangles.clear();
-    Keep keep(place.triangles);
+    Keep keep(label_, place.triangles);
     btBvhTriangleMeshShape::processAllTriangles(&keep, place.low, place.high);
     return place;
   }
 
+  const std::vector<Label>& label_;  // of the mesh's faces, or empty
   mutable std::array<Place, 16> places_;
   mutable size_t next_ = 0;
 };
@@ -128,7 +138,7 @@ class RockShape : public btBvhTriangleMeshShape {
 size_t face_of(const btPersistentManifold& m, const btManifoldPoint& p) {
   const bool rock_is_b = m.getBody0()->getUserIndex() > 0;
   const int part = rock_is_b ? p.m_partId1 : p.m_partId0, index = rock_is_b ? p.m_index1 : p.m_index0;
-  return static_cast<size_t>(part) * part_faces + static_cast<size_t>(index);
+  return face_number(part, index);
 }
 
 class Mine : public btDiscreteDynamicsWorld {
@@ -177,8 +187,7 @@ struct Physics::Impl {
   std::vector<std::unique_ptr<btTypedConstraint>> joints;
   std::vector<std::unique_ptr<btRigidBody>> blocks;
   const Relief* relief;
-  std::vector<std::array<std::uint32_t, 3>> solid;  // the mesh's faces where some are water; else empty
-  std::vector<btPersistentManifold*> treads;        // (wheels) contacts with the relief
+  std::vector<btPersistentManifold*> treads;  // (wheels) contacts with the relief
 
   Impl(const Mesh& mesh_, const Vehicle& vehicle_, const Pose& X_WB, double step, const Relief* relief_,
        const std::vector<Loose>& loose)
@@ -202,17 +211,8 @@ struct Physics::Impl {
     world.removeCollisionObject(rock.get());
   }
 
-  // Wheels go through water: its faces shrink to a point, so that the others keep their numbers.
-  void drain() {
-    if (std::find(mesh.label.begin(), mesh.label.end(), Label::water) == mesh.label.end()) return;
-    solid = mesh.face;
-    for (size_t f = 0; f < solid.size(); ++f)
-      if (mesh.label[f] == Label::water) solid[f].fill(solid[f][0]);
-  }
-
   void add_rock() {
-    drain();
-    const auto& face = solid.empty() ? mesh.face : solid;
+    const auto& face = mesh.face;
     const int faces = static_cast<int>(mesh.face.size());
     for (int first = 0; first < faces; first += part_faces) {
       btIndexedMesh part;
@@ -225,7 +225,7 @@ struct Physics::Impl {
       part.m_vertexType = PHY_DOUBLE;
       triangles.addIndexedMesh(part, PHY_INTEGER);
     }
-    rock_shape = std::make_unique<RockShape>(&triangles, true);
+    rock_shape = std::make_unique<RockShape>(&triangles, mesh.label);
     rock_shape->setMargin(0.002);
     rock = std::make_unique<btCollisionObject>();
     rock->setCollisionShape(rock_shape.get());

@@ -9,7 +9,7 @@
 namespace adit {
 namespace {
 
-Chances drawn(const Draws& draws, std::uint64_t scan, size_t n, bool normal) {
+Chances drawn(const Draws& draws, std::uint64_t scan, size_t n, Normals normal) {
   Chances chances;
   chances.resize(n);
   draw_chances(draws, scan, n, normal, chances, 0);
@@ -18,15 +18,18 @@ Chances drawn(const Draws& draws, std::uint64_t scan, size_t n, bool normal) {
 
 TEST(Chance, WithoutNormalNumbersTheOthersAreTheSame) {
   const Draws draws(7, Draw::beam_chance);
-  const Chances all = drawn(draws, 9, 100, true), some = drawn(draws, 9, 100, false);
+  const Chances all = drawn(draws, 9, 100, Normals::both), some = drawn(draws, 9, 100, Normals::none);
   EXPECT_EQ(some.detect, all.detect);
   EXPECT_EQ(some.drop, all.drop);
   EXPECT_EQ(some.range, std::vector<double>(100, 0.0));
+  const Chances half = drawn(draws, 9, 100, Normals::range);
+  EXPECT_EQ(half.range, all.range);
+  EXPECT_EQ(half.angle, std::vector<double>(100, 0.0));
 }
 
 TEST(Chance, IsBoxAndMullersOfTheWordsAtItsAddress) {
   const Draws draws(7, Draw::beam_chance);
-  const Chances chances = drawn(draws, 33, 1000, true);
+  const Chances chances = drawn(draws, 33, 1000, Normals::both);
   for (std::uint64_t k = 0; k < chances.size(); ++k) {
     const auto w = draws.at(33, k);
     const double u = (w[0] + 0.5) / 4294967296.0, v = (w[1] + 0.5) / 4294967296.0;
@@ -52,7 +55,7 @@ TEST(Chance, WordsSideBySideAreThoseAtTheirAddresses) {
 
 TEST(Chance, OfOneBeamIsThatOfItInItsScanBitForBit) {
   const Draws draws(7, Draw::beam_chance);
-  const Chances chances = drawn(draws, 5, 361, true);
+  const Chances chances = drawn(draws, 5, 361, Normals::both);
   for (std::uint64_t k = 0; k < chances.size(); ++k) {
     const Chance one = chance_at(draws, 5, k);
     EXPECT_EQ(one.range, chances[k].range);
@@ -63,7 +66,7 @@ TEST(Chance, OfOneBeamIsThatOfItInItsScanBitForBit) {
 
 TEST(Chance, RangeAndAngleAreNormalAndIndependent) {
   const Draws draws(3, Draw::beam_chance);
-  const Chances c = drawn(draws, 1, 100000, true);
+  const Chances c = drawn(draws, 1, 100000, Normals::both);
   const double n = static_cast<double>(c.size());
   double sum = 0, squares = 0, fourth = 0, product = 0;
   for (size_t k = 0; k < c.size(); ++k) {

@@ -294,7 +294,7 @@ TEST(Noise, AScanOfAxesIsReadAsItsBeamsOneByOneBitForBit) {
   const Draws draws(3, Draw::beam_chance);
   Chances chances;
   chances.resize(axes.size() + 5);
-  draw_chances(draws, 17, axes.size(), true, chances, 5);
+  draw_chances(draws, 17, axes.size(), Normals::both, chances, 5);
   SensorSettings plain, still = exact(), dusty;
   plain.drop_out = 0.05;
   dusty.dust_loss_per_m = 0.05, dusty.crosstalk = 0.05;
@@ -302,16 +302,16 @@ TEST(Noise, AScanOfAxesIsReadAsItsBeamsOneByOneBitForBit) {
     for (const SensorSettings& s : {plain, still, dusty}) {
       Device device = device_of(name, name[0] == 'i' ? LaserChoice{} : LaserChoice{"8m", ""});
       device.bias_m = 0.004;
-      std::vector<Reading> readings;
+      Readings readings;
       read_axes(device, axes, s, chances, 5, {3, 17, 0}, 0, readings);
       ASSERT_EQ(readings.size(), axes.size());
       for (size_t k = 0; k < axes.size(); ++k) {
         Return one{axes.range_m[k], axes.power[k]};
         const Reading r = reading(device, {&one, 1}, axes.cosine[k], s, chances[5 + k], {3, 17, k}, 0);
-        EXPECT_EQ(std::bit_cast<std::uint32_t>(readings[k].range_m), std::bit_cast<std::uint32_t>(r.range_m)) << k;
-        EXPECT_EQ(readings[k].code, r.code) << name << " " << k;
-        EXPECT_EQ(readings[k].surfaces, r.surfaces) << name << " " << k;
-        EXPECT_EQ(readings[k].fault, r.fault) << name << " " << k;
+        EXPECT_EQ(std::bit_cast<std::uint32_t>(readings.range_m[k]), std::bit_cast<std::uint32_t>(r.range_m)) << k;
+        EXPECT_EQ(readings.code[k], r.code) << name << " " << k;
+        EXPECT_EQ(readings.surfaces[k], r.surfaces) << name << " " << k;
+        EXPECT_EQ(readings.fault[k], r.fault) << name << " " << k;
       }
     }
 }
