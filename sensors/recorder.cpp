@@ -30,12 +30,20 @@ std::string place_name(const Vec3& p) {
 void check_open(const Caster& caster, const Pose& X_WB, const Mount& mount) {
   const Pose X_WS = X_WB * mount.X_BS;
   int before = 0, behind = 0;
+  bool under_water = false;
   for (const Vec3& d : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
     const Ray ray{X_WS.translation(), X_WS.linear() * d};
     const Hit hit = caster.nearest(ray);
     if (hit.face < 0) continue;
-    ++(caster.mesh().normal(static_cast<size_t>(hit.face)).dot(ray.direction) < 0 ? behind : before);
+    const auto face = static_cast<size_t>(hit.face);
+    const bool from_behind = caster.mesh().normal(face).dot(ray.direction) < 0;
+    ++(from_behind ? behind : before);
+    under_water =
+        under_water || (from_behind && !caster.mesh().label.empty() && caster.mesh().label[face] == Label::water);
   }
+  if (under_water)
+    throw Error("laser '" + mount.name + "' starts under water at " + place_name(X_WS.translation()) +
+                " m in W; raise its mount or begin the drive elsewhere");
   if (behind > before)
     throw Error("laser '" + mount.name + "' starts inside the rock at " + place_name(X_WS.translation()) +
                 " m in W; lower its mount or begin the drive elsewhere");

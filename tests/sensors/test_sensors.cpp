@@ -266,6 +266,10 @@ TEST(Sensors, BadInputIsAnsweredByItsCause) {
   const Rig rig = load_rig("cart4", 38400);
   EXPECT_THAT(error_of([&] { record(world, stand(1, 1.5), rig, {}, {}, 1); }),
               HasSubstr("inside the rock at (10.50, 0.00, 2.20)"));
+  World flooded = world;
+  flooded.mesh.label.assign(flooded.mesh.face.size(), Label::water);
+  EXPECT_THAT(error_of([&] { record(flooded, stand(1, 1.5), rig, {}, {}, 1); }),
+              HasSubstr("under water at (10.50, 0.00, 2.20)"));
   EXPECT_THAT(error_of([&] { record(world, stand(0.01, 0), rig, {}, {}, 1); }), HasSubstr("too short"));
   EXPECT_THAT(error_of([&] { record(world, Drive{}, rig, {}, {}, 1); }), HasSubstr("fewer than two poses"));
   SensorSettings s;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -64,6 +65,28 @@ TEST(Physics, StandsLevelAtHeightZeroOnALevelFloor) {
   EXPECT_NEAR(X.translation().norm(), 0, 1e-3);
   EXPECT_NEAR(angles.pitch_rad, 0, 0.01 * deg);
   EXPECT_NEAR(angles.roll_rad, 0, 0.01 * deg);
+}
+
+TEST(Physics, StandsInAPoolAsOnTheDryFloor) {
+  const World dry = flat(0.3);
+  World pool = dry;
+  // Its surface cuts through the frame.
+  const World surface = terrain_world({-2, -2}, {2, 2}, 0.1, [](const Vec2&) { return 0.4; });
+  for (const auto& face : surface.mesh.face) {
+    std::array<std::uint32_t, 3> corners;
+    for (size_t k = 0; k < 3; ++k) corners[k] = face[k] + static_cast<std::uint32_t>(dry.mesh.vertex.size());
+    pool.mesh.face.push_back(corners);
+    pool.mesh.label.push_back(Label::water);
+  }
+  pool.mesh.vertex.insert(pool.mesh.vertex.end(), surface.mesh.vertex.begin(), surface.mesh.vertex.end());
+  for (const char* name : {"cart", "groundhog"}) {
+    const Vehicle vehicle = load_vehicle(name);
+    Physics on_floor(dry.mesh, vehicle, pose_of({0, 0, 0}, 0), step_s),
+        in_pool(pool.mesh, vehicle, pose_of({0, 0, 0}, 0), step_s);
+    const Pose there = settled(on_floor), here = settled(in_pool);
+    EXPECT_TRUE(here.matrix().isApprox(there.matrix(), 1e-9)) << name << "\n" << here.matrix();
+    EXPECT_FALSE(in_pool.touched_face()) << name;
+  }
 }
 
 TEST(Physics, PitchOnARampIsItsSlope) {
