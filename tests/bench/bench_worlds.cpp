@@ -46,7 +46,8 @@ std::vector<Figure> furnished() {
     if (!check_world(world).ok()) throw Error("world_furnished: " + check_world(world).what());
   };
   const Cost bare = cost_of(make);
-  s.furniture.post_share = 0.9;
+  s.furniture.post_share = 1;
+  s.furniture.post_spacing_m = 1.3;
   s.decay.falls_per_100m = 1.5;
   s.decay.cleared_share = 0.3;
   const Cost full = cost_of(make);
