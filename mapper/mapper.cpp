@@ -28,7 +28,7 @@ Aligned align(const Odometry& odometry, const std::vector<ScanPoints>& points, c
   if (settings.method == "icra2003") return align_published(odometry, settings.icra2003, progress);
   const Chain chain = chain_of(odometry, settings.robust.node_m);
   const MatchPlaces match =
-      match_by_scans(points, chain, odometry.X_MB, settings.places, match_at_ribs(settings.odometry.match, odometry));
+      match_by_scans(points, chain, odometry, settings.places, match_at_ribs(settings.odometry.match, odometry));
   return align_robust(odometry, match, settings.robust, progress);
 }
 

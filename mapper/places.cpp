@@ -18,22 +18,40 @@ struct Around {
   std::vector<Pose2> X_iB;
 };
 
-/// Those `step_m` of way apart, up to before_m before and after_m after it.
+/// A path and where it falls apart.
+struct Shape {
+  std::vector<Pose2> X_MB;  // (scans)
+  std::vector<char> loose;  // (scans) the step to it is not known to a place's accuracy
+};
+
+Shape shape_of(const Odometry& odometry, double rigid_m) {
+  Shape shape{odometry.X_MB, std::vector<char>(odometry.X_MB.size(), 0)};
+  for (const DegenerateStretch& d : odometry.degenerate) {
+    if (d.sigma_m <= rigid_m) continue;
+    const std::vector<double>& stamp_s = odometry.stamp_s;
+    for (size_t i = std::upper_bound(stamp_s.begin(), stamp_s.end(), d.from_s) - stamp_s.begin();
+         i < stamp_s.size() && stamp_s[i] <= d.to_s; ++i)
+      shape.loose[i] = 1;
+  }
+  return shape;
+}
+
+/// Those `step_m` of way apart, up to before_m before and after_m after it, as far as the path holds together.
 struct Span {
   double before_m, after_m, step_m;
 };
 
-Around around(int i, const Span& span, const std::vector<ScanPoints>& scans, const Chain& chain,
-              const std::vector<Pose2>& X_MB) {
+Around around(int i, const Span& span, const std::vector<ScanPoints>& scans, const Chain& chain, const Shape& shape) {
   const int n = static_cast<int>(scans.size());
   std::vector<int> chosen{i};
-  for (int k = i - 1, last = i; k >= 0 && chain.along_m[i] - chain.along_m[k] <= span.before_m; --k)
+  for (int k = i - 1, last = i; k >= 0 && !shape.loose[k + 1] && chain.along_m[i] - chain.along_m[k] <= span.before_m;
+       --k)
     if (chain.along_m[last] - chain.along_m[k] >= span.step_m) chosen.push_back(last = k);
-  for (int k = i + 1, last = i; k < n && chain.along_m[k] - chain.along_m[i] <= span.after_m; ++k)
+  for (int k = i + 1, last = i; k < n && !shape.loose[k] && chain.along_m[k] - chain.along_m[i] <= span.after_m; ++k)
     if (chain.along_m[k] - chain.along_m[last] >= span.step_m) chosen.push_back(last = k);
   std::sort(chosen.begin(), chosen.end());
   Around a;
-  for (int k : chosen) a.scan.push_back(&scans[k]), a.X_iB.push_back(X_MB[i].inverse() * X_MB[k]);
+  for (int k : chosen) a.scan.push_back(&scans[k]), a.X_iB.push_back(shape.X_MB[i].inverse() * shape.X_MB[k]);
   return a;
 }
 
@@ -88,21 +106,23 @@ Fields fields(PlaceSettings& s) {
           {"map_step_m", &s.map_step_m, "between the scans of a place's map", 0.05, 10},
           {"scan_half_m", &s.scan_half_m, "way that is joined to the scan which is placed in it", 0, 50},
           {"scan_step_m", &s.scan_step_m, "between the scans that are joined", 0.05, 10},
+          {"rigid_m", &s.rigid_m, "a degenerate stretch less certain than this parts a place's scans", 0.01, 1000},
           {"sure_m", &s.sure_m, "a path known better than this needs no search", 0.05, 10},
           {"inlier_share", &s.inlier_share, "of the points, for a match to be one", 0, 1},
           {"ambiguous_share", &s.ambiguous_share, "of the best score, at which a second place makes a match ambiguous",
            0, 1}};
 }
 
-MatchPlaces match_by_scans(const std::vector<ScanPoints>& scans, const Chain& chain, const std::vector<Pose2>& X_MB,
+MatchPlaces match_by_scans(const std::vector<ScanPoints>& scans, const Chain& chain, const Odometry& odometry,
                            const PlaceSettings& settings, const MatchSettings& match) {
-  return [&scans, &chain, X_MB, settings, match](const std::vector<PlacePair>& pairs) {
+  return [&scans, &chain, shape = shape_of(odometry, settings.rigid_m), settings,
+          match](const std::vector<PlacePair>& pairs) {
     std::vector<PlaceMatch> result(pairs.size());
     parallel_for(pairs.size(), [&](size_t k) {
       const PlacePair& pair = pairs[k];
-      const Around place = around(pair.i, map_span(pair, settings), scans, chain, X_MB);
+      const Around place = around(pair.i, map_span(pair, settings), scans, chain, shape);
       const Around seen =
-          around(pair.j, {settings.scan_half_m, settings.scan_half_m, settings.scan_step_m}, scans, chain, X_MB);
+          around(pair.j, {settings.scan_half_m, settings.scan_half_m, settings.scan_step_m}, scans, chain, shape);
       const LocalMap map(place.scan, place.X_iB);
       result[k] = match_pair(pair, join_scans(seen.scan, seen.X_iB, {}), map, settings, match);
     });

@@ -137,13 +137,17 @@ std::string line_of(const std::string& name, const Case& c, const MapSettings& s
     const std::vector<ScanPoints> points = scan_points(scans, mount, o.X_MB, s.odometry.points);
     const Chain chain = chain_of(o, s.robust.node_m);
     const Aligned a =
-        align_robust(o, match_by_scans(points, chain, o.X_MB, s.places, match_at_ribs(s.odometry.match, o)), s.robust);
+        align_robust(o, match_by_scans(points, chain, o, s.places, match_at_ribs(s.odometry.match, o)), s.robust);
     aligned_m = ate_m(a.X_MB, T);
     rematched_m = ate_m(rematch(points, a.X_MB, s.rematch, match_at_ribs(s.odometry.match, o)), T);
     for (const Closure& l : a.closures) {
       accepted += l.accepted, ambiguous += l.ambiguous;
       const Vec3 e = error_of(l.X_ij, T[l.i].inverse() * T[l.j]);
-      wrong += l.accepted && (e.head<2>().norm() > 0.5 || std::abs(e.z()) > 5 * degree);
+      wrong += l.accepted && (e.head<2>().norm() > 0.5 || std::abs(e.z()) > 3 * degree);  // as the score has it
+      if (!detail.empty())
+        out << "closure " << l.i << ' ' << l.j << ' ' << l.accepted << ' ' << l.ambiguous << ' ' << l.X_ij.x_m << ' '
+            << l.X_ij.y_m << ' ' << l.X_ij.yaw_rad << ' ' << e.transpose() << ' '
+            << error_of(l.X_ij, a.X_MB[l.i].inverse() * a.X_MB[l.j]).transpose() << '\n';
     }
     for (size_t i = 1; i < a.covariance.size(); ++i) {
       const Vec3 e = error_of(a.X_MB[i], T[i]);
@@ -179,7 +183,7 @@ void map_log(const std::string& file, const MapSettings& s, const std::string& o
       scan_points(log.scans[laser], log.rig.mounts[laser], o.X_MB, s.odometry.points);
   const Chain chain = chain_of(o, s.robust.node_m);
   const MatchSettings match = match_at_ribs(s.odometry.match, o);
-  const Aligned a = align_robust(o, match_by_scans(points, chain, o.X_MB, s.places, match), s.robust);
+  const Aligned a = align_robust(o, match_by_scans(points, chain, o, s.places, match), s.robust);
   const std::vector<Pose2> X = rematch(points, a.X_MB, s.rematch, match);
   Trajectory path{o.stamp_s, {}};
   for (const Pose2& x : X) path.X_WB.push_back(lift(x));
