@@ -55,7 +55,8 @@ void check_factor(const Document& table, const Factor& f, const Study& study) {
 void check_levels(const Study& study, const Document& file) {
   std::set<std::string> seen;
   for (const Factor& f : study.factor) {
-    if (!seen.insert(f.key).second && f.key != "set") throw Error(file.name() + ": two factors have the key '" + f.key + "'");
+    if (!seen.insert(f.key).second && f.key != "set")
+      throw Error(file.name() + ": two factors have the key '" + f.key + "'");
     Study alone = study;
     alone.sample = "grid";
     alone.factor = {f};
