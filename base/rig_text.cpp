@@ -114,13 +114,26 @@ void change_rig(RigText& rig, const std::vector<std::string>& changes) {
   }
 }
 
+namespace {
+
+/// What the sheet of a mount's laser says; an Error names the rig that asks for it.
+LaserModel laser_of(const RigText& text, const MountText& m, int baud, const LaserChoice& choice) {
+  try {
+    return load_laser(m.model, baud, choice);
+  } catch (const Error& e) {
+    throw Error("rig '" + text.name + "', laser '" + m.name + "': " + e.what(), e.fault());
+  }
+}
+
+}  // namespace
+
 Rig rig_of(const RigText& text, int baud, const LaserChoice& choice) {
   if (text.lasers.empty()) throw Error("the rig '" + text.name + "' has no laser left; it needs one at least");
   Rig rig{text.name, {}};
   for (const MountText& m : text.lasers) {
     const LaserChoice own{choice.mode.empty() ? m.mode : choice.mode, choice.raster.empty() ? m.raster : choice.raster};
     rig.mounts.push_back({.name = m.name,
-                          .laser = load_laser(m.model, baud, own),
+                          .laser = laser_of(text, m, baud, own),
                           .X_BS = pose_of({m.position_m[0], m.position_m[1], m.position_m[2]}, m.yaw_deg * deg,
                                           m.pitch_deg * deg, m.roll_deg * deg),
                           .tilt = tilt_of(m)});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The planar part of the mapper on recordings that are there already, held against their truth: a line a recording.
 //   campaign_mapper [KEY=VALUE...] DIR...   DIR/recording/{log,truth}.h5 as `adit drive` writes them; keys are those below
-//                                           [map]; campaign.detail=FILE writes a line a step of the last recording
+//                                           [map]; campaign.detail=FILE writes a line a step and a closure of the last one
 // A .clf in place of DIR is a real log without truth: its path goes to campaign.detail as TUM.
 // Errors are those of the mapping laser's pose in the plane: what scan matching fixes is the place of the laser, not that
 // of the body below it.
