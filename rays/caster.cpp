@@ -206,8 +206,7 @@ namespace {
 
 // Sixteen numbers from and into columns, mostly whole: a copy of a known length is a few registers, others are calls.
 template <class T>
-void take(T* lanes, const std::vector<T>& column, size_t at) {
-  const size_t n = std::min<size_t>(16, column.size() - at);
+void take(T* lanes, const std::vector<T>& column, size_t at, size_t n) {
   if (n == 16) return void(std::copy_n(column.data() + at, 16, lanes));
   std::copy_n(column.data() + at, n, lanes);
   std::fill(lanes + n, lanes + 16, lanes[n - 1]);
@@ -221,9 +220,9 @@ void put(const T* lanes, size_t n, std::vector<T>& column, size_t at) {
 struct Sixteen {
   alignas(64) double x[16], y[16], z[16], dx[16], dy[16], dz[16];
 
-  Sixteen(const RayColumns<double>& rays, size_t at) {
-    take(x, rays.x, at), take(y, rays.y, at), take(z, rays.z, at);
-    take(dx, rays.dx, at), take(dy, rays.dy, at), take(dz, rays.dz, at);
+  Sixteen(const RayColumns<double>& rays, size_t at, size_t n) {
+    take(x, rays.x, at, n), take(y, rays.y, at, n), take(z, rays.z, at, n);
+    take(dx, rays.dx, at, n), take(dy, rays.dy, at, n), take(dz, rays.dz, at, n);
   }
 };
 
@@ -245,14 +244,15 @@ void refine(const Packet& p, const Sixteen& r, const Lanes& l, double* range_m, 
 
 }  // namespace
 
-void Caster::nearest(const RayColumns<double>& rays, HitColumns<double>& hits) const {
-  hits.resize(rays.size());
+void Caster::nearest(const RayColumns<double>& rays, size_t begin, size_t end, size_t together,
+                     HitColumns<double>& hits) const {
+  ADIT_CHECK(end <= rays.size() && end <= hits.face.size() && together > 0 && together <= 16);
   Packet p;
   Lanes l;
   const Vec3& m = impl_->middle;
-  for (size_t at = 0; at < rays.size(); at += 16) {
-    const Sixteen r(rays, at);
-    const size_t n = std::min<size_t>(16, rays.size() - at);
+  for (size_t at = begin; at < end; at += together) {
+    const size_t n = std::min(together, end - at);
+    const Sixteen r(rays, at, n);
     p.arm(n, 1e4F);
     for (size_t k = 0; k < 16; ++k) {
       p.rays.ray.org_x[k] = static_cast<float>(r.x[k] - m.x());
@@ -277,9 +277,10 @@ void Caster::glance(const RayColumns<float>& rays, HitColumns<float>& hits) cons
   for (size_t begin = 0; begin < rays.size(); begin += 16) {
     const size_t n = std::min<size_t>(16, rays.size() - begin);
     p.arm(n, 1e4F);
-    take(p.rays.ray.org_x, rays.x, begin), take(p.rays.ray.org_y, rays.y, begin), take(p.rays.ray.org_z, rays.z, begin);
-    take(p.rays.ray.dir_x, rays.dx, begin), take(p.rays.ray.dir_y, rays.dy, begin),
-        take(p.rays.ray.dir_z, rays.dz, begin);
+    take(p.rays.ray.org_x, rays.x, begin, n), take(p.rays.ray.org_y, rays.y, begin, n),
+        take(p.rays.ray.org_z, rays.z, begin, n);
+    take(p.rays.ray.dir_x, rays.dx, begin, n), take(p.rays.ray.dir_y, rays.dy, begin, n),
+        take(p.rays.ray.dir_z, rays.dz, begin, n);
     impl_->intersect(p);
     alignas(64) float range_m[16], cosine[16];
     alignas(64) std::int32_t face[16];

@@ -65,8 +65,11 @@ class Caster {
   /// hits[i] belongs to rays[i]. Fastest where neighbours in the span are neighbours in space (beams of one fan in
   /// order).
   void nearest(std::span<const Ray> rays, std::span<Hit> hits) const;
-  /// The same for many, sixteen together in their order.
-  void nearest(const RayColumns<double>& rays, HitColumns<double>& hits) const;
+  /// The same for rays [begin, end) of columns, `together` of them (16 at most) traced at a time in their order. Where a ray
+  /// meets an edge, which of its faces is told may depend on its company; all else does not.
+  /// @pre hits have the rays' size
+  void nearest(const RayColumns<double>& rays, size_t begin, size_t end, size_t together,
+               HitColumns<double>& hits) const;
   /// The same to the accuracy of floats, 5e-5 m a few hundred metres from the middle of the mesh: rays given about
   /// middle(), traced in their order.
   void glance(const RayColumns<float>& rays, HitColumns<float>& hits) const;

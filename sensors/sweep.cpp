@@ -312,7 +312,11 @@ void Sweep::fire(size_t begin, size_t end, size_t first, Scans& scans, ScanTruth
       };
       tilted.empty() ? aim_by(aim_) : aim_by(Aim(tilted[i], mount_->X_BS.translation(), mount_->laser.interlace));
     }
-    caster_->nearest(shot.axis, shot.hit);
+    shot.hit.resize(n * beams);
+    for (size_t group = 0; group < n; group += abreast) {
+      const size_t scans_of_it = std::min(abreast, n - group);
+      caster_->nearest(shot.axis, group * beams, (group + scans_of_it) * beams, scans_of_it * (16 / abreast), shot.hit);
+    }
     for (size_t i = 0; i < n; ++i) {
       if (rays > 1) spread(places_of(i), shot);
       tell(tilted.empty() ? fan_ : tilted[i], i * beams, places_of(i), scan_address(index_, first + row + i), row + i,

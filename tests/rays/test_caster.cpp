@@ -70,7 +70,10 @@ TEST(Caster, ColumnsOfRaysAreAnsweredAsSingleRaysHoweverTheyFillPackets) {
     std::vector<Ray> rays = walking_fan(scans, 37);     // fills no whole number of packets
     rays.push_back({Vec3(10, 2, -5), -Vec3::UnitZ()});  // from below, away: nothing
     HitColumns<double> hits;
-    caster.nearest(columns_of<double>(rays, Vec3::Zero()), hits);
+    hits.resize(rays.size());
+    const RayColumns<double> columns = columns_of<double>(rays, Vec3::Zero());
+    caster.nearest(columns, 0, rays.size() / 2, 16, hits);
+    caster.nearest(columns, rays.size() / 2, rays.size(), 6, hits);
     for (size_t i = 0; i + 1 < rays.size(); ++i) {
       const Hit one = caster.nearest(rays[i]);
       EXPECT_EQ(hits.face[i], one.face) << scans << " " << i;
