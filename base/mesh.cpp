@@ -40,10 +40,10 @@ Label label_of(const std::string& file, double value) {
 
 const std::map<std::string, int>& label_ids() {
   static const std::map<std::string, int> ids{
-      {"none", 0},    {"floor", 1}, {"roof", 2},      {"rib", 3},       {"cap", 4},   {"vehicle", 5}, {"pusher", 6},
-      {"rubble", 7},  {"talus", 8}, {"post", 9},      {"crossbar", 10}, {"crib", 11}, {"bolt", 12},   {"rail", 13},
-      {"tie", 14},    {"belt", 15}, {"stopping", 16}, {"door", 17},     {"pipe", 18}, {"cable", 19},  {"water", 20},
-      {"sludge", 21}, {"car", 22},  {"beam", 23},     {"block", 24}, {"cavity", 25}, {"scar", 26}};
+      {"none", 0},    {"floor", 1}, {"roof", 2},      {"rib", 3},       {"cap", 4},     {"vehicle", 5}, {"pusher", 6},
+      {"rubble", 7},  {"talus", 8}, {"post", 9},      {"crossbar", 10}, {"crib", 11},   {"bolt", 12},   {"rail", 13},
+      {"tie", 14},    {"belt", 15}, {"stopping", 16}, {"door", 17},     {"pipe", 18},   {"cable", 19},  {"water", 20},
+      {"sludge", 21}, {"car", 22},  {"beam", 23},     {"block", 24},    {"cavity", 25}, {"scar", 26}};
   return ids;
 }
 
