@@ -219,7 +219,7 @@ LaidPoints lay(const MapPoints& points, const std::function<const Pose&(size_t)>
       n,
       [&](size_t k) {
         const size_t i = order[k], soon = order[std::min(k + 16, n - 1)];
-        __builtin_prefetch(&points.p_M[soon]);
+        __builtin_prefetch(&points.p_M[soon]);  // they lie in the order of the file, far from one another
         if (!points.seen_M.empty()) __builtin_prefetch(&points.seen_M[soon]);
         const Vec3 p = X_WM(i) * points.p_M[i];
         if (!p.allFinite()) return;

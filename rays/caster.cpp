@@ -335,10 +335,11 @@ bool look_at(RTCPointQueryFunctionArguments* args) {
   const Vec3 a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
   const Vec3 n = (b - a).cross(c - a);
   if (q.seen_along && n.dot(*q.seen_along) <= 0) return false;
-  const double reach = q.best + tie_m, height = n.dot(q.p - a);  // the latter times |n|
-  if (height * height > (1 + 1e-9) * reach * reach * n.squaredNorm()) return false;
+  const double reach = q.best + tie_m, far_m2 = (1 + 1e-9) * reach * reach;
+  const double height = n.dot(q.p - a);  // over the face's plane, times |n|
+  if (height * height > far_m2 * n.squaredNorm()) return false;
   const Vec3 at = closest_on_triangle(q.p, a, b, c);
-  if ((at - q.p).squaredNorm() > (1 + 1e-9) * reach * reach) return false;
+  if ((at - q.p).squaredNorm() > far_m2) return false;
   const double d = (at - q.p).norm();
   if (!(d <= q.best + tie_m) || (d >= q.best - tie_m && q.face >= 0 && !beats(q, f, at))) return false;
   q.best = d;

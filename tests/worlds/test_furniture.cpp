@@ -35,6 +35,14 @@ WorldSettings full(double edge_m = 0.35) {
   return s;
 }
 
+// The same panel with nothing in it.
+WorldSettings empty(double edge_m) {
+  WorldSettings s = full(edge_m);
+  s.condition = "bare";
+  s.furniture = {};
+  return s;
+}
+
 // Two levels 2 m apart over the unit square's four triangles, and sides: a room of 8 m x 8 m.
 Mesh room() {
   Mesh m;
@@ -172,9 +180,7 @@ TEST(Furniture, TilesGiveSoundPartsToo) {
 }
 
 TEST(Furniture, ABareMineHasNoObjectsAndItsVolumeNeedsNoOther) {
-  WorldSettings s = full(0.5);
-  s.condition = "bare";
-  s.furniture = {};
+  WorldSettings s = empty(0.5);
   const World world = make_world(s, 1);
   EXPECT_TRUE(world.objects.empty());
   EXPECT_EQ(world.numbers.bare_m3, 0);
@@ -227,9 +233,7 @@ std::map<int, std::pair<Vec3, Vec3>> boxes_of(const Mesh& mesh, Label label) {
 }
 
 TEST(Decay, WhatFellAndWhereItFellFromBearTheirLabelsAndNumbers) {
-  WorldSettings s = full(0.35);
-  s.condition = "bare";
-  s.furniture = {};
+  WorldSettings s = empty(0.35);
   s.decay.falls_per_100m = 3;
   s.decay.skins_per_100m = 3;
   std::map<Label, size_t> seen;
@@ -279,9 +283,7 @@ TEST(Decay, NothingThatStoodBeforeAFallIsOnItsRubble) {
 
 // Chance asks for the same things however wide a passage is and however the mine is made.
 TEST(Furniture, WhatHasNoRoomIsTold) {
-  WorldSettings s = full(0.5);
-  s.condition = "bare";
-  s.furniture = {};
+  WorldSettings s = empty(0.5);
   s.furniture.belt_share = 1;
   s.furniture.post_share = 1;
   const auto count = [](const World& world, Label label) {
