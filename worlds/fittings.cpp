@@ -235,7 +235,7 @@ Bodies loose_block(const Space& space, const Loop& footprint, double height_m, c
   return bodies;
 }
 
-StoppingBodies stopping(const Space& space, const Spot& spot, double door_left_m, double rib_gap_m) {
+StoppingBodies stopping(const Space& space, const Spot& spot, double door_left_m, double rib_gap_m, double widest_m) {
   constexpr double half_thick = 0.1, door_half = 0.45, course = 0.2;
   StoppingBodies out;
   const auto here = space.level(spot.p);
@@ -253,7 +253,7 @@ StoppingBodies stopping(const Space& space, const Spot& spot, double door_left_m
   // Floor and roof across most of the way: what lies at the ribs is for the courses to end at.
   const std::vector<double> middle{0.3, 0.5, 0.7};
   const double wide = 0.85 * std::min(free_m(space, spot, 1, middle), free_m(space, spot, -1, middle));
-  if (!(wide > 0.5) || wide > 6) return {};
+  if (!(wide > 0.5)) return {};
   const auto whole = space.patch(rectangle(spot.p, across, wide, half_thick));
   if (!whole) return {};
   // Courses of blocks; the lowest stands on the floor, the highest ends at the roof.
@@ -271,6 +271,7 @@ StoppingBodies stopping(const Space& space, const Spot& spot, double door_left_m
                  high = first + (last - first) * (k + 1) / between;
     const double z0 = k < 0 ? here->floor_z + 0.02 : low, z1 = k == between ? here->roof_z - 0.02 : high;
     const double left = width(1, z0, z1), right = -width(-1, z0, z1);
+    if (std::max(left, -right) > widest_m) return {};
     const Height bottom = k < 0 ? on_floor() : at(low), top = k == between ? to_roof() : at(high);
     const bool beside_door = z0 < door_top;
     if (beside_door) {

@@ -113,8 +113,10 @@ void Furnisher::add_blocker(const Blocker& b, const Way& way) {
 void Furnisher::add_stopping(const Spot& spot) {
   ask(Label::stopping);
   const double door = lot(stones, 1, -0.5, 0.5);
+  constexpr double spalled_m = 1.5;  // and wandered: what is further off is no rib of this passage
+  const double widest = 0.5 * plan_.plan.passages[passage_].width_m + spalled_m;
   for (double rib_gap : {0.006, 0.02, 0.05, 0.1}) {
-    StoppingBodies bodies = stopping(space_, spot, door, rib_gap);
+    StoppingBodies bodies = stopping(space_, spot, door, rib_gap, widest);
     if (bodies.wall.empty()) continue;
     if (!put(Label::stopping, std::move(bodies.wall), yaw_of(spot.left()), true)) continue;
     put(Label::door, std::move(bodies.door), yaw_of(spot.left()));

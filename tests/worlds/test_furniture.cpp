@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "rays/caster.h"
 #include "worlds/decay.h"
+#include "worlds/fittings.h"
 #include "worlds/solid.h"
 #include "worlds/space.h"
 #include "worlds/worlds.h"
@@ -282,6 +283,15 @@ TEST(Decay, NothingThatStoodBeforeAFallIsOnItsRubble) {
 }
 
 // Chance asks for the same things however wide a passage is and however the mine is made.
+// Where pillars were robbed a passage has ribs in places only: a wall across it would run on through its neighbours.
+TEST(Furniture, AStoppingReachesNoFurtherThanOnePassage) {
+  const Mesh rock = room();  // 4 m to either side
+  const Space space(rock, 4);
+  const Spot spot{{0.5, 0}, Vec2::UnitX()};
+  EXPECT_FALSE(stopping(space, spot, 0, 0.006, 4.1).wall.empty());
+  EXPECT_TRUE(stopping(space, spot, 0, 0.006, 3.9).wall.empty());
+}
+
 TEST(Furniture, WhatHasNoRoomIsTold) {
   WorldSettings s = empty(0.5);
   s.furniture.belt_share = 1;
