@@ -119,6 +119,7 @@ struct Problem {
   Lattice lattice;
   std::vector<double> bias_m;    // (lasers)
   std::vector<int> bias_column;  // (lasers) or -1
+  bool sees_pitch = true;
   double rms_m = 0;
 
   int controls() const { return motion.clock.controls(); }
@@ -150,7 +151,8 @@ void add_row(SparseRows& rows, std::initializer_list<std::pair<int, double>> ent
   rows.right.push_back(right / sigma);
 }
 
-/// Spline: second differences (a shaking of 2 deg at 1.2 Hz has 4 deg in 0.2 s), and the gauge at the start.
+/// Spline: second differences (a shaking of 2 deg at 1.2 Hz has 4 deg in 0.2 s), the gauge at the start, and a level body
+/// where nothing sees it pitch: rings across the way lie as well on a floor that it dives into, or slants over.
 void add_spline_priors(const Problem& problem, SparseRows& rows) {
   constexpr std::array<double, 3> bend = {0.1, 5 * deg, 5 * deg}, start = {1e-3, 5 * deg, 5 * deg};
   const int n = problem.controls();
@@ -159,6 +161,8 @@ void add_spline_priors(const Problem& problem, SparseRows& rows) {
     for (int k = 0; k + 2 < n; ++k)
       add_row(rows, {{of * n + k, 1.0}, {of * n + k + 1, -2.0}, {of * n + k + 2, 1.0}}, 0, bend[of]);
   }
+  if (!problem.sees_pitch)
+    for (int k = n; k < 3 * n; ++k) add_row(rows, {{k, 1.0}}, 0, problem.settings.level_sigma_deg * deg);
 }
 
 /// Lattice: second differences, twist, and a weak hold between neighbours.
@@ -340,7 +344,8 @@ Problem state(const Log& log, const std::vector<double>& stamp_s, const std::vec
                   std::move(motion),
                   std::move(lattice),
                   std::vector<double>(lasers, 0),
-                  std::vector<int>(lasers, -1)};
+                  std::vector<int>(lasers, -1),
+                  find_view(log.rig, View::forward_vertical) >= 0};
   if (settings.bias_sigma_m > 0)
     for (const TiltBeam& beam : problem.data.beams) problem.bias_column[beam.laser] = 0;
   return problem;
@@ -416,6 +421,8 @@ Fields fields(TiltSettings& s) {
       {"kernel", &s.kernel, "width of the robust kernel in sigmas", 0.1, 1000},
       {"curvature_m", &s.curvature_m, "prior sd of the second difference of neighbouring nodes", 1e-4, 10},
       {"rib_sigma_deg", &s.rib_sigma_deg, "trust in a rib being vertical, for one rib in one scan; 0 = none", 0, 90},
+      {"level_sigma_deg", &s.level_sigma_deg, "prior sd of pitch and roll where no forward vertical laser sees pitch",
+       0.01, 90},
       {"bias_sigma_m", &s.bias_sigma_m, "prior sd of each laser's constant range error; 0 = taken as none", 0, 1},
       {"bias_doubt", &s.bias_doubt, "the formal sd of the range errors is so many times too small", 0, 1000},
       {"iterations", &s.iterations, "of Gauss-Newton", 1, 50}};
@@ -451,6 +458,7 @@ TiltSolution solve_tilt(const Log& log, const std::vector<double>& stamp_s, cons
   progress("tilt", settings.iterations, settings.iterations);
   std::tie(solution.path, solution.dense) = sampled(problem.motion, stamp_s);
   solution.range_bias_m = problem.bias_m;
+  if (!problem.sees_pitch) solution.note = "no forward vertical laser: pitch is not seen, and taken as level";
   solution.rms_m = problem.rms_m;
   solution.bias_covariance = bias_covariance(log.rig, problem, solution.biased, last.covariance);
   solution.factor_operations = last.factor_operations;

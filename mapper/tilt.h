@@ -24,6 +24,7 @@ struct TiltSettings {
   double kernel = 2.5;         // width of the robust kernel in sigmas
   double curvature_m = 0.05;   // prior sd of the second difference of neighbouring nodes
   double rib_sigma_deg = 8;    // trust in a rib being vertical, for one rib in one scan; 0 = none
+  double level_sigma_deg = 2;  // prior sd of pitch and roll where no forward vertical laser sees pitch
   double bias_sigma_m = 0.01;  // prior sd of each laser's constant range error; 0 = taken as none
   double bias_doubt = 4;       // the formal sd of the range errors is so many times too small
   int iterations = 3;
@@ -39,7 +40,7 @@ struct TiltSolution {
   Eigen::MatrixXd bias_covariance;   // (lasers x lasers) as solve_tilt says; where not estimated, of the sheet's band
   double rms_m = 0;                  // of the residuals of floor and roof, weighted by the kernel
   double factor_operations = 0;      // of one factorisation
-  std::string note;                  // why the path stayed planar; empty otherwise
+  std::string note;                  // why the path stayed planar, or what of it is not seen; empty otherwise
 };
 
 /// Height, pitch and roll of the body from its planar path and the vertical lasers: ONE sparse least squares whose
@@ -50,8 +51,9 @@ struct TiltSolution {
 /// kernel, on a coarse lattice until the last iteration: the motion hardly needs the fine one, its factor costs most.
 /// @param stamp_s  (n) of the horizontal laser, rising;  @param planar  (n) X_MB of the body, level
 /// x and y: what the planar poses fix is where the horizontal laser stands; the body moves under it as it pitches and
-/// rolls. The tilt of the whole is a gauge without gravity: the ribs fix it, else the start counts as level. A rig with
-/// neither a forward vertical nor a downward laser keeps the planar path, level at z = 0, and says so in `note`.
+/// rolls. The tilt of the whole is a gauge without gravity: the ribs fix it, else the start counts as level. A rig without
+/// a forward vertical laser does not see pitch: the body counts as level, give or take level_sigma_deg. One that has no downward
+/// laser either keeps the planar path, level at z = 0. Both are said in `note`.
 /// bias_covariance: the formal one for residuals of rms_m, times bias_doubt squared, since what the lattice cannot follow
 /// is not white; a laser without an estimate has that of its stated band, bias_m^2 / 3.
 TiltSolution solve_tilt(const Log& log, const std::vector<double>& stamp_s, const std::vector<Pose2>& planar,

@@ -9,6 +9,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/tube_log.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -163,6 +164,26 @@ TEST(Tilt, OfARoughRingThatRollsByMetresCloses) {
   EXPECT_LT(error.z_m, 0.08);
   EXPECT_LT(error.pitch_deg, 0.5);
   EXPECT_LT(error.roll_deg, 0.7);
+}
+
+// Rings across the way lie as well on floor and roof if the body dives into them: what does not see pitch must not invent it.
+TEST(Tilt, StaysNearLevelAndSaysSoWhereNoLaserSeesPitch) {
+  Ground ground;
+  ground.roll_m = 0.03, ground.rough_m = 0.03;
+  Ride ride;
+  ride.pitch_deg = 2, ride.roll_deg = 1, ride.heave_m = 0.01;
+  const World ring = ring_world(15, 3.7, 1.9, 0.2);
+  const Trajectory truth = ride_along(ring_line(15, 3.7, 1.7, 1.2), ground, ride);
+  Rig rig = load_rig("cart4", 38400);
+  rig.mounts.erase(rig.mounts.begin() + find_view(rig, View::forward_vertical));
+  const Log log = tube_log(bent(ring.mesh, ground), rig, truth, 0.005, 2);
+  const Planar planar = planar_of(log, truth, 0.005);
+  const TiltSolution solution = solve_tilt(log, planar.stamp_s, planar.pose, {});
+  const TiltError error = error_of(solution.path, truth);
+  EXPECT_LT(error.z_m, 0.3);
+  EXPECT_LT(error.pitch_deg, 4);  // a cart that is shaken by 2 deg on a floor that rolls by 1 deg
+  EXPECT_LT(error.roll_deg, 2.5);
+  EXPECT_THAT(solution.note, testing::HasSubstr("pitch is not seen"));
 }
 
 TEST(Tilt, RangeErrorsOfTheLasersAreFound) {
