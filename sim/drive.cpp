@@ -21,7 +21,7 @@ namespace {
 constexpr double lookahead_m = 0.9;
 constexpr size_t stretch_s = 10;  // of a drive that is given away at once
 constexpr double kept_s = 60;     // of the path at least, for what a trouble's picture shows
-constexpr double settle_s = 5;    // longest time to come to rest before the drive
+constexpr double settle_s = 15;   // longest time to come to rest before the drive
 constexpr double still = 5e-3;    // m/s and rad/s
 constexpr double still_for_s = 0.2;
 constexpr double line_m = 0.25;                  // between points of the line that was driven
