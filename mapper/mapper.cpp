@@ -23,13 +23,12 @@ int horizontal_laser(const Log& log) {
   return h;
 }
 
-Aligned align(const Odometry& odometry, const std::vector<ScanPoints>& points, const MapSettings& settings,
-              const Progress& progress) {
+Aligned align(const Odometry& odometry, const std::vector<ScanPoints>& points, const MatchSettings& match,
+              const MapSettings& settings, const Progress& progress) {
   if (settings.method == "icra2003") return align_published(odometry, settings.icra2003, progress);
   const Chain chain = chain_of(odometry, settings.robust.node_m);
-  const MatchPlaces match =
-      match_by_scans(points, chain, odometry, settings.places, match_at_ribs(settings.odometry.match, odometry));
-  return align_robust(odometry, match, settings.robust, progress);
+  return align_robust(odometry, match_by_scans(points, chain, odometry, settings.places, match), settings.robust,
+                      progress);
 }
 
 bool nods(const Log& log) {
@@ -179,10 +178,10 @@ Estimate make_map(const Log& given, const MapSettings& settings, const Progress&
     estimate.notes.push_back(text);
   }
 
-  const std::vector<ScanPoints> points = scan_points(scans, mount, odometry.X_MB, settings.odometry.points);
-  Aligned aligned = align(odometry, points, settings, progress);
-  estimate.planar =
-      rematch(points, aligned.X_MB, settings.rematch, match_at_ribs(settings.odometry.match, odometry), progress);
+  const OdometrySettings found = at_ribs(settings.odometry, odometry);
+  const std::vector<ScanPoints> points = scan_points(scans, mount, odometry.X_MB, found.points);
+  Aligned aligned = align(odometry, points, found.match, settings, progress);
+  estimate.planar = rematch(points, aligned.X_MB, settings.rematch, found.match, progress);
   estimate.rounds = std::move(aligned.rounds);
   estimate.converged = aligned.converged;
   estimate.closures = std::move(aligned.closures);

@@ -36,6 +36,13 @@ MatchSettings with_sigma(const MatchSettings& s, double rib_sigma_m) {
   return out;
 }
 
+// Ribs that are off by a decimetre anyway are no worse where floor and roof may be met.
+OdometrySettings seeing_far(const OdometrySettings& s) {
+  OdometrySettings out = s;
+  out.points.range_max_m = std::max(s.points.range_max_m, s.uneven_range_m);
+  return out;
+}
+
 Mat3 prediction_information(double dt_s, const OdometrySettings& s) {
   const double m = s.speed_change_m_s2 * dt_s * dt_s + 1e-4, rad = s.turn_change_deg_s2 * degree * dt_s * dt_s + 1e-5;
   return Vec3(1 / (m * m), 1 / (m * m), 1 / (rad * rad)).asDiagonal();
@@ -298,6 +305,7 @@ Fields fields(OdometrySettings& s) {
       {"search_deg", &s.search_deg, "half width of the search where matching fails", 1, 180},
       {"most_speed_m_s", &s.most_speed_m_s, "a faster match is a wrong one", 0.1, 100},
       {"uneven_from", &s.uneven_from, "ribs are uneven beyond so many times match.map_sigma_m", 1, 1000},
+      {"uneven_range_m", &s.uneven_range_m, "range_max_m where ribs are uneven, if that is less", 1, 1000},
       {"steadiness", &s.steadiness, "how many times less than its scans' errors the map of even ribs drifts, variances",
        1, 1000},
       {"information_scale", &s.information_scale, "of a step against that of its match, by trial", 1e-6, 1e6}};
@@ -305,8 +313,11 @@ Fields fields(OdometrySettings& s) {
   return all;
 }
 
-MatchSettings match_at_ribs(const MatchSettings& settings, const Odometry& odometry) {
-  return odometry.uneven ? with_sigma(settings, odometry.rib_sigma_m) : settings;
+OdometrySettings at_ribs(const OdometrySettings& settings, const Odometry& odometry) {
+  if (!odometry.uneven) return settings;
+  OdometrySettings out = seeing_far(settings);
+  out.match = with_sigma(settings.match, odometry.rib_sigma_m);
+  return out;
 }
 
 Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings,
@@ -319,7 +330,7 @@ Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const Odom
                   std::to_string(scans.stamp_s[i]) + " s, is not after that of the scan before; stamps must grow");
   Odometry even = track(scans, horizontal, settings, false, progress);
   if (even.rib_sigma_m <= settings.uneven_from * settings.match.map_sigma_m) return even;
-  OdometrySettings patient = settings;
+  OdometrySettings patient = seeing_far(settings);
   patient.match.iterations *= 3;  // pairs flip to and fro between the layers of the map
   Odometry uneven = track(scans, horizontal, patient, true, progress);
   uneven.uneven = true;

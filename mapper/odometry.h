@@ -43,6 +43,7 @@ struct OdometrySettings {
   double new_share = 0.1;         // of a scan's points not on the map, for it to be a new key scan
   double information_scale = 1;   // of a step against that of its match
   double uneven_from = 1.5;       // times match.map_sigma_m: ribs beyond that are uneven
+  double uneven_range_m = 20;     // points.range_max_m there, if that is less: what is far holds the heading
   double steadiness = 8;          // see Odometry; where ribs are even
   double search_m = 0.6;          // half width of the search when the refiner fails
   double search_deg = 25;
@@ -50,8 +51,8 @@ struct OdometrySettings {
 };
 Fields fields(OdometrySettings& s);
 
-/// How scans of this log are best matched: to ribs as uneven as the front end found them.
-MatchSettings match_at_ribs(const MatchSettings& settings, const Odometry& odometry);
+/// How scans of this log are best taken and matched: with points and match for ribs as uneven as the front end found them.
+OdometrySettings at_ribs(const OdometrySettings& settings, const Odometry& odometry);
 
 /// Motion of the body from one horizontal laser's scans alone: each scan is matched to a map of recent key scans from a
 /// prediction of constant speed, with a correlative search where that fails. Where the ribs leave a direction open the

@@ -134,12 +134,12 @@ std::string line_of(const std::string& name, const Case& c, const MapSettings& s
   double aligned_m = 0, rematched_m = 0, coverage = 0, pose_anees = 0;
   int accepted = 0, wrong = 0, ambiguous = 0;
   if (s.method == "robust") {
-    const std::vector<ScanPoints> points = scan_points(scans, mount, o.X_MB, s.odometry.points);
+    const OdometrySettings found = at_ribs(s.odometry, o);
+    const std::vector<ScanPoints> points = scan_points(scans, mount, o.X_MB, found.points);
     const Chain chain = chain_of(o, s.robust.node_m);
-    const Aligned a =
-        align_robust(o, match_by_scans(points, chain, o, s.places, match_at_ribs(s.odometry.match, o)), s.robust);
+    const Aligned a = align_robust(o, match_by_scans(points, chain, o, s.places, found.match), s.robust);
     aligned_m = ate_m(a.X_MB, T);
-    rematched_m = ate_m(rematch(points, a.X_MB, s.rematch, match_at_ribs(s.odometry.match, o)), T);
+    rematched_m = ate_m(rematch(points, a.X_MB, s.rematch, found.match), T);
     for (const Closure& l : a.closures) {
       accepted += l.accepted, ambiguous += l.ambiguous;
       const Vec3 e = error_of(l.X_ij, T[l.i].inverse() * T[l.j]);
@@ -179,12 +179,11 @@ void map_log(const std::string& file, const MapSettings& s, const std::string& o
   const Log log = read_carmen(file).log;
   const int laser = find_view(log.rig, View::horizontal);
   const Odometry o = estimate_motion(log.scans[laser], log.rig.mounts[laser], s.odometry);
-  const std::vector<ScanPoints> points =
-      scan_points(log.scans[laser], log.rig.mounts[laser], o.X_MB, s.odometry.points);
+  const OdometrySettings found = at_ribs(s.odometry, o);
+  const std::vector<ScanPoints> points = scan_points(log.scans[laser], log.rig.mounts[laser], o.X_MB, found.points);
   const Chain chain = chain_of(o, s.robust.node_m);
-  const MatchSettings match = match_at_ribs(s.odometry.match, o);
-  const Aligned a = align_robust(o, match_by_scans(points, chain, o, s.places, match), s.robust);
-  const std::vector<Pose2> X = rematch(points, a.X_MB, s.rematch, match);
+  const Aligned a = align_robust(o, match_by_scans(points, chain, o, s.places, found.match), s.robust);
+  const std::vector<Pose2> X = rematch(points, a.X_MB, s.rematch, found.match);
   Trajectory path{o.stamp_s, {}};
   for (const Pose2& x : X) path.X_WB.push_back(lift(x));
   write_tum(out, path);

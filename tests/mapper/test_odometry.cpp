@@ -70,6 +70,8 @@ TEST(Odometry, RibsThatLeanAreFoundUnevenAndAreMatchedAllTheSame) {
   const PlanLog log = leaning(straight_and_round(0.05, 100));
   const Odometry o = estimate_motion(log.scans, log.mount, {});
   EXPECT_TRUE(o.uneven);
+  EXPECT_GT(at_ribs({}, o).match.map_sigma_m, MatchSettings{}.map_sigma_m);
+  EXPECT_EQ(at_ribs({}, o).points.range_max_m, OdometrySettings{}.uneven_range_m);
   EXPECT_EQ(o.lost, 0);
   // Steps follow the swing of the scans; what adds up is far less.
   EXPECT_LT(end_error_m(log, o), 0.02 * driven_m(log));
@@ -79,7 +81,8 @@ TEST(Odometry, RoughRibsAreEven) {
   const PlanLog log = straight_and_round(0.05, 100);
   const Odometry o = estimate_motion(log.scans, log.mount, {});
   EXPECT_FALSE(o.uneven);
-  EXPECT_EQ(match_at_ribs({}, o).map_sigma_m, MatchSettings{}.map_sigma_m);
+  EXPECT_EQ(at_ribs({}, o).match.map_sigma_m, MatchSettings{}.map_sigma_m);
+  EXPECT_EQ(at_ribs({}, o).points.range_max_m, ScanPointSettings{}.range_max_m);
 }
 
 TEST(Odometry, ACartThatStandsStays) {
