@@ -119,7 +119,7 @@ struct Problem {
   Lattice lattice;
   std::vector<double> bias_m;    // (lasers)
   std::vector<int> bias_column;  // (lasers) or -1
-  bool sees_pitch = true;
+  bool sees_pitch = true;        // a forward vertical laser does
   double rms_m = 0;
 
   int controls() const { return motion.clock.controls(); }

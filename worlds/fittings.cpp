@@ -253,7 +253,7 @@ StoppingBodies stopping(const Space& space, const Spot& spot, double door_left_m
   // Floor and roof across most of the way: what lies at the ribs is for the courses to end at.
   const std::vector<double> middle{0.3, 0.5, 0.7};
   const double wide = 0.85 * std::min(free_m(space, spot, 1, middle), free_m(space, spot, -1, middle));
-  if (!(wide > 0.5)) return {};
+  if (!(wide > 0.5) || wide > widest_m) return {};
   const auto whole = space.patch(rectangle(spot.p, across, wide, half_thick));
   if (!whole) return {};
   // Courses of blocks; the lowest stands on the floor, the highest ends at the roof.

@@ -37,11 +37,11 @@ Bodies car(const Spot& at, double wheel_z, double pitch);
 Bodies fallen_beam(const Vec3& from, const Vec3& to);
 /// A loose block with flat sides, on the floor.
 Bodies loose_block(const Space& space, const Loop& footprint, double height_m, const Vec2& lean);
-/// A wall of blocks across, its courses as wide as the ribs let them, with an opening for a door; and the door. None where
-/// a course would reach further than widest_m to a side: there a wall would close more than one passage.
 struct StoppingBodies {
   Bodies wall, door;
 };
+/// A wall of blocks across, its courses as wide as the ribs let them, with an opening for a door; and the door. None where
+/// a course would reach further than widest_m to a side: there a wall would close more than one passage.
 StoppingBodies stopping(const Space& space, const Spot& at, double door_left_m, double rib_gap_m, double widest_m);
 
 /// How far to either side of a spot nothing is met at some heights over the floor, as shares of the height.

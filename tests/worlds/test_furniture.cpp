@@ -282,7 +282,6 @@ TEST(Decay, NothingThatStoodBeforeAFallIsOnItsRubble) {
   EXPECT_GT(looked, 50u);
 }
 
-// Chance asks for the same things however wide a passage is and however the mine is made.
 // Where pillars were robbed a passage has ribs in places only: a wall across it would run on through its neighbours.
 TEST(Furniture, AStoppingReachesNoFurtherThanOnePassage) {
   const Mesh rock = room();  // 4 m to either side
@@ -292,6 +291,7 @@ TEST(Furniture, AStoppingReachesNoFurtherThanOnePassage) {
   EXPECT_TRUE(stopping(space, spot, 0, 0.006, 3.9).wall.empty());
 }
 
+// Chance asks for the same things however wide a passage is and however the mine is made.
 TEST(Furniture, WhatHasNoRoomIsTold) {
   WorldSettings s = empty(0.5);
   s.furniture.belt_share = 1;
