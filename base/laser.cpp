@@ -36,7 +36,7 @@ constexpr double degree = std::numbers::pi / 180;
 struct Sheet {
   LaserModel model;
   double fov_deg = 180, turn_ms = 13.32, resolution_mm = 1, sigma_mm = 5, bias_mm = 0, spot_mm = 0, divergence_mrad = 0;
-  double curve_mm = 0, energy_mm = 0, warm_up_mm = 0;
+  double curve_mm = 0, energy_mm = 0, warm_up_mm = 0, sensitivity_factor = 1;
   std::vector<int> bauds, skips;
 };
 
@@ -55,6 +55,10 @@ Fields mode_fields(Sheet& s) {
           {"bias_mm", &s.bias_mm, "systematic error of a device, half width of its band", 0, 1e9}};
 }
 
+Fields sensitivity_fields(Sheet& s) {
+  return {{"sensitivity_factor", &s.sensitivity_factor, "of the least reflectivity", 0.01, 100}};
+}
+
 Fields sheet_fields(Sheet& s) {
   LaserModel& m = s.model;
   Fields all{{"name", &m.name, "how reports call it"},
@@ -70,7 +74,8 @@ Fields sheet_fields(Sheet& s) {
              {"warm_up_mm", &s.warm_up_mm, "error of a cold device, at most", 0, 1000},
              {"warm_up_s", &m.warm_up_s, "time in which it fades to a third", 1, 1e6},
              {"codes", &m.codes, "whether it tells why there is no range"}};
-  for (const Fields& more : {raster_fields(s), mode_fields(s)}) all.insert(all.end(), more.begin(), more.end());
+  for (const Fields& more : {raster_fields(s), mode_fields(s), sensitivity_fields(s)})
+    all.insert(all.end(), more.begin(), more.end());
   return all;
 }
 
@@ -80,7 +85,9 @@ void choose(const Document& file, const std::string& kind, const std::string& wa
   std::string known;
   bool found = wanted.empty();
   const Sheet top = sheet;
-  for (const Document& table : file.tables(kind)) {
+  const std::vector<Document> tables = file.tables(kind);
+  if (tables.empty() && file.has(kind)) file.fail(kind, "must be tables, [[" + kind + "]] each");
+  for (const Document& table : tables) {
     Sheet with = top;
     std::string name;
     Fields fields = fields_of(with);
@@ -105,7 +112,7 @@ void check_chart(const Document& file, const LaserModel& m) {
 }
 
 // A scan is on the link while `skips` mirror scans pass unheard.
-double interval_s(const Document& file, const Sheet& s, int baud) {
+double interval_s(const Document& file, const Sheet& s, int baud, const std::string& raster) {
   const double scan_s = s.turn_ms * 1e-3 * s.model.interlace;
   if (baud <= 0 || s.bauds.empty()) return scan_s;
   std::string known;
@@ -113,7 +120,21 @@ double interval_s(const Document& file, const Sheet& s, int baud) {
     if (s.bauds[i] == baud) return scan_s * (1 + s.skips[i]);
     known += (i ? ", " : "") + std::to_string(s.bauds[i]);
   }
-  file.fail("bauds", "has no rate of " + std::to_string(baud) + " Bd; it has " + known);
+  const std::string lacks = "has no rate of " + std::to_string(baud) + " Bd; it has " + known;
+  if (raster.empty()) file.fail("bauds", lacks);
+  throw Error(file.name() + ": the raster '" + raster + "' " + lacks);
+}
+
+// A scan leaves the device a turn later, at most 508 bytes a turn, and then has the link to cross, ten bits a byte.
+// Source: SICK telegram listing 8007954; a telegram frames two bytes a value by ten, and holds 812 at most: longer scans
+// come as one telegram a turn.
+double latency_s(const Sheet& s, int baud) {
+  if (baud <= 0 || s.bauds.empty()) return 0;
+  const LaserModel& m = s.model;
+  const auto bytes_of = [](int values) { return 10 + 2 * values; };
+  const int bytes = bytes_of(m.beams) <= 812 ? bytes_of(m.beams) : bytes_of(1 + (m.beams - 1) / m.interlace);
+  const int turns = m.interlace + (bytes + 507) / 508;
+  return turns * s.turn_ms * 1e-3 + 10.0 * bytes / baud;
 }
 
 }  // namespace
@@ -124,9 +145,10 @@ LaserModel load_laser(const std::string& name_or_file, int baud, const LaserChoi
   LaserModel& m = s.model;
   m.beams = 361;
   m.range_max_m = 30;
-  file.read(sheet_fields(s), {"mode", "raster"});
+  file.read(sheet_fields(s), {"mode", "raster", "sensitivity"});
   choose(file, "mode", choice.mode, mode_fields, s);
   choose(file, "raster", choice.raster, raster_fields, s);
+  choose(file, "sensitivity", choice.sensitivity, sensitivity_fields, s);
   if (m.name.empty()) m.name = name_or_file;
   if (s.bauds.size() != s.skips.size()) file.fail("skips", "must have one number for each of 'bauds'");
   check_chart(file, m);
@@ -140,7 +162,10 @@ LaserModel load_laser(const std::string& name_or_file, int baud, const LaserChoi
   m.curve_m = s.curve_mm * 1e-3;
   m.energy_m = s.energy_mm * 1e-3;
   m.warm_up_m = s.warm_up_mm * 1e-3;
-  m.interval_s = interval_s(file, s, baud);
+  m.reflectivity_at_4m *= s.sensitivity_factor;
+  for (double& least : m.chart_reflectivity) least *= s.sensitivity_factor;
+  m.interval_s = interval_s(file, s, baud, choice.raster);
+  m.latency_s = latency_s(s, baud);
   return m;
 }
 

@@ -33,6 +33,7 @@ struct LaserModel {
   double energy_m = 0;                     // error between dark and bright targets, at most
   double warm_up_m = 0, warm_up_s = 3600;  // error of a cold device, and the time in which it fades
   bool codes = false;                      // tells why there is no range
+  double latency_s = 0;                    // from a scan's begin until its telegram has arrived; 0: not stated
 
   /// Direction of beam k in the scan plane, 0 = S's x axis.
   double beam_angle_rad(int k) const { return -fov_rad / 2 + fov_rad * k / (beams - 1); }
@@ -43,14 +44,15 @@ struct LaserModel {
   double least_reflectivity(double range_m) const;
 };
 
-/// A setting of a laser: names of its [[mode]] and [[raster]] tables; empty = what the file states at its top.
+/// A setting of a laser: names of its [[mode]], [[raster]] and [[sensitivity]] tables; empty = what the file states at
+/// its top.
 struct LaserChoice {
-  std::string mode, raster;
+  std::string mode = {}, raster = {}, sensitivity = {};
 };
 
 /// A bundled laser by name, or one from a TOML file; baud > 0 sets interval_s by the serial link (SICK telegram
 /// listing, table of skipped scans). Errors name file and key; a rate that the link cannot carry is an error, and so is a
-/// mode or a raster that the laser does not have.
+/// mode, a raster or a sensitivity that the laser does not have.
 LaserModel load_laser(const std::string& name_or_file, int baud, const LaserChoice& choice = {});
 
 }  // namespace adit

@@ -45,7 +45,7 @@ View view_of(const Mount& mount);
 int find_view(const Rig& rig, View view);
 
 /// A bundled rig by name, or one from a TOML file: tables [[laser]] with name, model, position_m, yaw_deg, pitch_deg,
-/// roll_deg, mode, raster, tilt_deg, tilt_s, tilt_when; what `choice` names holds for all lasers instead.
+/// roll_deg, mode, raster, sensitivity, tilt_deg, tilt_s, tilt_when; what `choice` names holds for all lasers instead.
 Rig load_rig(const std::string& name_or_file, int baud, const LaserChoice& choice = {});
 
 }  // namespace adit

@@ -78,6 +78,7 @@ Fields fields(MountText& m) {
           {"model", &m.model, "a bundled laser or a file"},
           {"mode", &m.mode, "range mode of the model"},
           {"raster", &m.raster, "sector and step of the model"},
+          {"sensitivity", &m.sensitivity, "of the model: low, medium or high of an outdoor one"},
           {"position_m", &m.position_m, "x, y, z of the mirror in the body frame"},
           {"yaw_deg", &m.yaw_deg, "turn about z, first", -360, 360},
           {"pitch_deg", &m.pitch_deg, "then about y; positive looks down", -360, 360},
@@ -131,9 +132,11 @@ Rig rig_of(const RigText& text, int baud, const LaserChoice& choice) {
   if (text.lasers.empty()) throw Error("the rig '" + text.name + "' has no laser left; it needs one at least");
   Rig rig{text.name, {}};
   for (const MountText& m : text.lasers) {
-    const LaserChoice own{choice.mode.empty() ? m.mode : choice.mode, choice.raster.empty() ? m.raster : choice.raster};
+    const auto own = [](const std::string& all, const std::string& mounts) { return all.empty() ? mounts : all; };
     rig.mounts.push_back({.name = m.name,
-                          .laser = laser_of(text, m, baud, own),
+                          .laser = laser_of(text, m, baud,
+                                            {own(choice.mode, m.mode), own(choice.raster, m.raster),
+                                             own(choice.sensitivity, m.sensitivity)}),
                           .X_BS = pose_of({m.position_m[0], m.position_m[1], m.position_m[2]}, m.yaw_deg * deg,
                                           m.pitch_deg * deg, m.roll_deg * deg),
                           .tilt = tilt_of(m)});
@@ -147,7 +150,8 @@ std::string to_toml(const RigText& rig) {
   for (MountText& m : copy.lasers) {
     Fields kept;
     for (const Field& f : fields(m)) {
-      const bool tilt = f.key.starts_with("tilt"), word = f.key == "mode" || f.key == "raster";
+      const bool tilt = f.key.starts_with("tilt"),
+                 word = f.key == "mode" || f.key == "raster" || f.key == "sensitivity";
       const bool absent = (tilt && m.tilt_deg.empty()) || (word && std::get<std::string*>(f.value)->empty());
       if (!absent) kept.push_back(f);
     }

@@ -11,7 +11,7 @@ namespace adit {
 
 /// One [[laser]] of a rig as people write it: where it sits in degrees, what it is by its model's name.
 struct MountText {
-  std::string name, model = "lms200", mode, raster;
+  std::string name, model = "lms200", mode, raster, sensitivity;
   std::vector<double> position_m{0, 0, 0};
   double yaw_deg = 0, pitch_deg = 0, roll_deg = 0;
   std::vector<double> tilt_deg;

@@ -89,7 +89,7 @@ Content read_content(const std::string& file, const std::string& truth_file) {
       c.points = read_pcd(file);
       return c;
     case Format::folder:
-      throw Error(file + ": folders are written, not read; name a file");
+      throw Error(file + ": holds no log-NNNN.h5 of a drive; other folders are written, not read; name a file");
   }
   return c;
 }

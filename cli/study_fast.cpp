@@ -215,7 +215,7 @@ Placements find_placements(const Study& study, const Scenario& s, const std::str
   std::vector<Sight> sights(candidates.size()), fixed;
   RigText all{"candidates", {}};
   for (const Candidate& c : candidates) all.lasers.push_back(c.mount);
-  const LaserChoice choice{s.sensors.mode, s.sensors.raster};
+  const LaserChoice choice{s.sensors.mode, s.sensors.raster, s.sensors.sensitivity};
   const Rig rig = rig_of(all, s.sensors.baud, choice);
   progress("candidate mounts", 0, static_cast<double>(sights.size()));
   parallel_for(sights.size(), [&](size_t i) { sights[i] = course.course().sight(rig.mounts[i], course.hull()); });

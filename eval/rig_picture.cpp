@@ -81,7 +81,11 @@ std::string words_of(const Mount& mount) {
 }  // namespace
 
 Picture rig_picture(const RigExhibit& x, RigView view) {
-  const Picture scene = take_picture(scene_of(x), camera_of(x, view), width_px, height_px);
+  const double low = 70 + 34 * static_cast<double>(x.rig.mounts.size());  // of the words' ground
+  Camera camera = camera_of(x, view);
+  const Vec3 lift = low / 2 / height_px * camera.height_m * camera.up;  // the passage stands below the words
+  camera.target += lift, camera.eye += lift;
+  const Picture scene = take_picture(scene_of(x), camera, width_px, height_px);
   Drawing drawing;
   drawing.width_px = width_px;
   drawing.height_px = height_px;
@@ -89,7 +93,7 @@ Picture rig_picture(const RigExhibit& x, RigView view) {
   double y = 56;
   const Colour ink = rgb(0x222222);
   // A ground of its own: the words would lie on the passage's walls.
-  const double low = 70 + 34 * static_cast<double>(x.rig.mounts.size()), right = 20 + legend_px;
+  const double right = 20 + legend_px;
   drawing.add(Area{{{{20, 16}, {right, 16}, {right, low}, {20, low}}}, {255, 255, 255, 225}});
   drawing.add(Words{{40, y}, "rig " + x.rig.name, {.size_px = 30, .colour = ink, .bold = true, .halo_px = 2}});
   for (size_t i = 0; i < x.rig.mounts.size(); ++i) {

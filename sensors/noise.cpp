@@ -53,12 +53,13 @@ double dust_range_m(const SensorSettings& s, double rock_m, const BeamAddress& a
   return range_m < rock_m ? range_m : -1;
 }
 
-// Sd of one range: the sheet's, and what the spot adds.
+// Sd of one range: the sheet's, and what the spot adds by merged surfaces or by its smear.
 double sigma_m(const Device& device, const Echo& echo, size_t rays, double cosine, const SensorSettings& s) {
   constexpr double of_spread = 0.1;  // merged surfaces are told less surely
-  const double merged_m = rays > 1 ? of_spread * echo.spread_m : 0;
+  const double own_m2 = s.noise ? range_variance_m2(device.model, 1 / echo.margin) : 0;
+  const double merged_m = s.noise && rays > 1 ? of_spread * echo.spread_m : 0;
   const double smeared_m2 = rays == 1 && s.footprint ? footprint_variance_m2(device.model, echo.range_m, cosine) : 0;
-  return std::sqrt(range_variance_m2(device.model, 1 / echo.margin) + merged_m * merged_m + smeared_m2);
+  return std::sqrt(own_m2 + merged_m * merged_m + smeared_m2);
 }
 
 }  // namespace
@@ -83,7 +84,7 @@ Reading reading(const Device& device, std::span<Return> returns, double cosine, 
   if (!echo.noticed) return nothing(device.model.codes && echo.margin > 0.85 ? Code::weak : Code::no_echo);
   double range_m = stepped_m(echo.range_m, settings.counter_mm * 1e-3) +
                    device_error_m(device, echo.range_m, echo.effective_reflectivity, on_s);
-  if (settings.noise && chance.range != 0)
+  if (chance.range != 0)
     range_m += settings.noise_scale * sigma_m(device, echo, returns.size(), cosine, settings) * chance.range;
   return told(device, range_m, echo.surfaces, echo.spread_m > 0.05 ? trouble::mixed : 0);
 }
@@ -116,13 +117,13 @@ void margins(const Some& some, const LaserModel& model, double dirty_window, dou
 void tell_ordinary(const Some& some, const Device& device, const SensorSettings& s, const double* margin,
                    double* told_m) {
   const LaserModel& m = device.model;
-  const double scale = s.noise ? s.noise_scale : 0, smear = s.footprint ? 1 : 0, bias_m = device.bias_m;
+  const double scale = s.noise_scale, own = s.noise ? 1 : 0, smear = s.footprint ? 1 : 0, bias_m = device.bias_m;
   const double range_max_m = m.range_max_m, drop_out = s.drop_out;
   const double sure = s.detection ? std::exp(25 * s.detection_spread) : 0;  // Threshold::passes has it from 24 on
   double told[Some::most];  // of its own, so that nothing else can change meanwhile
   for (size_t k = 0; k < some.n; ++k) {
     const double variance_m2 =
-        range_variance_m2(m, 1 / margin[k]) + smear * footprint_variance_m2(m, some.range_m[k], some.cosine[k]);
+        own * range_variance_m2(m, 1 / margin[k]) + smear * footprint_variance_m2(m, some.range_m[k], some.cosine[k]);
     const double range_m = some.range_m[k] + bias_m + scale * std::sqrt(variance_m2) * some.normal[k];
     const double stepped = stepped_m(range_m, m.resolution_m);
     const bool ordinary = (some.drop[k] >= drop_out) & (some.power[k] > 0) & (margin[k] > sure) &

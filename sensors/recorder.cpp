@@ -46,7 +46,7 @@ void check_open(const Caster& caster, const Pose& X_WB, const Mount& mount) {
                 " m in W; raise its mount or begin the drive elsewhere");
   if (behind > before)
     throw Error("laser '" + mount.name + "' starts inside the rock at " + place_name(X_WS.translation()) +
-                " m in W; lower its mount or begin the drive elsewhere");
+                " m in W; move its mount or begin the drive elsewhere");
 }
 
 void check(const Rig& rig, const SensorSettings& settings) {
@@ -184,7 +184,8 @@ class Laser {
       ++beats_;
       if (!survives(t, beat_.number(), faults_, begin_s_, index_, seed_)) continue;
       // What is logged is when the computer believes that a scan began.
-      log.stamp_s.push_back(t + clock_error_s(t, faults_, begin_s_) + jitter(first_ + truth.stamp_s.size()));
+      const double late_s = settings_.latency ? mounts_[0].laser.latency_s : 0;
+      log.stamp_s.push_back(t + clock_error_s(t, faults_, begin_s_) + jitter(first_ + truth.stamp_s.size()) + late_s);
       truth.stamp_s.push_back(t);
       if (mounts_[0].tilt.nods()) truth.tilt_rad.push_back(nod_.at(t, path));
     }

@@ -14,6 +14,7 @@ struct SensorSettings {
   std::string rig = "cart4";
   std::vector<std::string> mounts;  // changes to the rig: "LASER key=value ...", see base/rig_text.h
   std::string mode, raster;         // of every laser; empty: as the rig says
+  std::string sensitivity;          // the same
   int baud = 38400;
   bool noise = true;                // of a range: the sheet's sd, growing near the detection threshold
   double noise_scale = 1;           // of a worn device: factor of that sd
@@ -26,6 +27,7 @@ struct SensorSettings {
   double drop_out = 0.001;          // share of beams that give nothing readable
   double late = 0.05;               // share of scans before which the link loses one scan more
   double jitter_s = 0.001;          // error of a logged stamp, evenly within plus and minus this
+  bool latency = false;             // stamps tell when a scan has arrived, not when it began
   double mount_error_deg = 0;       // sd about each axis of the true mount against the nominal one
   double mount_error_m = 0;         // and along each axis
   int sub_rays = 1;                 // rays in a beam's spot: 1 = its axis alone, 7, 19 or 37
@@ -34,6 +36,7 @@ struct SensorSettings {
   bool energy = false;              // error between dark and bright targets
   bool warm_up = false;             // error of a device that is not yet warm
   double on_s = 0;                  // how long the devices have been on when the drive begins
+  bool rounding = true;             // to the steps of the telegram; else to micrometres
   double counter_mm = 0;            // step of the device's counter before the telegram's rounding; 0 = none
   double dirty_window = 1;          // factor of the detection threshold; the sheet's dirty window is 1.55
   double dust_loss_per_m = 0;       // light lost on the way, each way

@@ -112,7 +112,8 @@ void Sweep::aim(const Aim& aim, double time_s, std::uint64_t scan, size_t at, co
   constexpr double degree = std::numbers::pi / 180;
   const size_t beams = aim.beams();
   const LaserModel& m = device_.model;
-  const bool noisy = settings_->noise && (m.sigma_m > 0 || m.spot_m > 0 || m.divergence_rad > 0);
+  const bool spot = m.spot_m > 0 || m.divergence_rad > 0;
+  const bool noisy = (settings_->noise && (m.sigma_m > 0 || spot)) || (settings_->footprint && spot);
   const Normals normal = settings_->beam_angle_deg > 0 ? Normals::both : noisy ? Normals::range : Normals::none;
   draw_chances(draws_, scan, beams, normal, shot.chance, at);
   for (size_t k = 0; k < beams; ++k) shot.error_rad[k] = settings_->beam_angle_deg * degree * shot.chance.angle[at + k];

@@ -33,8 +33,10 @@ TEST(Laser, AModeRasterOrRateThatTheModelLacksIsAnErrorThatListsWhatItHas) {
   };
   EXPECT_THAT(error_of(38400, {"64m", ""}), ::testing::HasSubstr("has no mode '64m'; it has 8m, 16m, 32m, 80m"));
   EXPECT_THAT(error_of(38400, {"", "180/0.1"}), ::testing::HasSubstr("has no raster '180/0.1'; it has 180/1"));
-  EXPECT_THAT(error_of(38400, {"", "180/0.25"}), ::testing::HasSubstr("has no rate of 38400 Bd; it has 500000"));
+  EXPECT_THAT(error_of(38400, {"", "180/0.25"}),
+              ::testing::HasSubstr("the raster '180/0.25' has no rate of 38400 Bd; it has 500000"));
   EXPECT_EQ(error_of(38400, {"8m", "100/0.25"}), "no error");
+  EXPECT_THAT(error_of(38400, {.sensitivity = "high"}), ::testing::HasSubstr("has no sensitivity 'high'; it has none"));
 }
 
 TEST(Laser, AChartMustGrowAndBePositive) {
@@ -54,6 +56,20 @@ TEST(Laser, AChartMustGrowAndBePositive) {
   EXPECT_TRUE(refused("chart_range_m = [1.0, 2.0]\nchart_reflectivity = [0.1, 0.0]\n"));
 }
 
+TEST(Laser, AChoiceThatIsNoTableIsAnErrorAtItsLine) {
+  const std::string file = scratch("laser_choice.toml");
+  for (const std::string kind : {"mode", "raster", "sensitivity"}) {
+    write_text(file, "name = 'x'\n" + kind + " = '8m'\n");
+    try {
+      load_laser(file, 0);
+      ADD_FAILURE() << kind << " was taken";
+    } catch (const Error& e) {
+      EXPECT_THAT(e.what(),
+                  ::testing::HasSubstr("laser_choice.toml:2: '" + kind + "' must be tables, [[" + kind + "]]"));
+    }
+  }
+}
+
 TEST(Rig, AModeAndARasterAreChosenByTheTableOrForAll) {
   const std::string file = scratch("rig_mode.toml");
   write_text(file, "[[laser]]\nname = 'a'\nmode = '8m'\n[[laser]]\nname = 'b'\nraster = '180/1'\n");
@@ -63,6 +79,20 @@ TEST(Rig, AModeAndARasterAreChosenByTheTableOrForAll) {
   EXPECT_EQ(all.mounts[0].laser.range_max_m, 16.375);
   EXPECT_EQ(all.mounts[1].laser.range_max_m, 16.375);
   EXPECT_EQ(all.mounts[1].laser.beams, 181);
+}
+
+TEST(Rig, ASensitivityIsChosenByTheTableOrForAll) {
+  const std::string file = scratch("rig_sensitivity.toml");
+  write_text(file,
+             "[[laser]]\nname = 'a'\nmodel = 'lms291'\nsensitivity = 'low'\n[[laser]]\nname = 'b'\nmodel = 'lms221'\n");
+  const auto least = [&](const LaserChoice& choice, size_t mount) {
+    return load_rig(file, 38400, choice).mounts[mount].laser.least_reflectivity(30);
+  };
+  EXPECT_NEAR(least({}, 0), 1.92 * 0.106, 1e-12);
+  EXPECT_NEAR(least({}, 1), 0.106, 1e-12);
+  EXPECT_NEAR(least({.sensitivity = "high"}, 0), 0.488 * 0.106, 1e-12);
+  EXPECT_NEAR(least({.sensitivity = "high"}, 1), 0.488 * 0.106, 1e-12);
+  EXPECT_EQ(to_toml(read_rig(file)).find("sensitivity = \"low\"") != std::string::npos, true);
 }
 
 TEST(Rig, Cart4HasOneLaserForEachView) {

@@ -86,6 +86,35 @@ TEST(Noise, GrowsTowardsTheThresholdAndWithTheSlantingSpot) {
   EXPECT_NEAR(sample(device, {8, 0.45, 1.2}, s, 1).sd, slanted, 5 * slanted / std::sqrt(2.0 * beams));
 }
 
+TEST(Noise, MergedSurfacesAreToldLessSurelyByATenthOfTheirSpread) {
+  const Device device = device_of("lms200");
+  SensorSettings s = exact();
+  s.noise = true;
+  // Half of the spot at 5 m, half at 5.8 m, which gives (5 / 5.8)^2 of the power.
+  const double far = 25 / (5.8 * 5.8), mean = 5 + 0.8 * far / (1 + far);
+  const double spread = 0.8 * std::sqrt(far) / (1 + far), power = 0.25 * (1 + far);
+  const double expected = std::hypot(range_sigma_m(device.model, device.model.least_reflectivity(5) / power),
+                                     0.1 * spread, 1e-3 / std::sqrt(12.0));
+  double sum = 0, squares = 0;
+  for (std::uint64_t k = 0; k < beams; ++k) {
+    std::vector<Return> returns{{5, 0.25}, {5.8, 0.25}};
+    const double e =
+        reading(device, returns, 1, s, chance_at(Draws(2, Draw::beam_chance), 17, k), {2, 17, k}, 0).range_m - mean;
+    sum += e, squares += e * e;
+  }
+  EXPECT_NEAR(sum / beams, 0, 5 * expected / std::sqrt(beams));
+  EXPECT_NEAR(std::sqrt(squares / beams), expected, 5 * expected / std::sqrt(2.0 * beams));
+}
+
+TEST(Noise, TheSmearOfASlantingSpotErrsWithoutOtherNoiseToo) {
+  const Device device = device_of("lms200");
+  SensorSettings s = exact();
+  s.footprint = true;
+  const double alone = std::hypot(footprint_sigma_m(device.model, 8, std::cos(1.2)), 1e-3 / std::sqrt(12.0));
+  EXPECT_NEAR(sample(device, {8, 0.45, 1.2}, s, 1).sd, alone, 5 * alone / std::sqrt(2.0 * beams));
+  EXPECT_LT(sample(device, {8, 0.45, 0}, s, 1).sd, 1e-6);  // head-on there is none
+}
+
 TEST(Noise, ShareOfEchoesIsTheChanceOfDetection) {
   const Device device = device_of("lms200");
   const LaserModel& model = device.model;
@@ -171,6 +200,24 @@ TEST(Noise, BiasCurveAndBrightnessStayWithinTheSheetsFifteenMillimetresButForFiv
   }
 }
 
+TEST(Noise, TheBandsOfADevicesErrorsFillTheSheetsInEveryModeButForBrightnessInMillimetres) {
+  struct Row {
+    const char *model, *mode;
+    double sheet_m, energy;
+  };
+  for (const Row& row : {Row{"lms200", "8m", 0.015, 0},
+                         {"lms200", "80m", 0.040, 1},
+                         {"lms220", "8m", 0.015, 0},
+                         {"lms291", "80m", 0.050, 1},
+                         {"lms221", "80m", 0.050, 1},
+                         {"lms211", "80m", 0.050, 1}}) {
+    const LaserModel m = load_laser(row.model, 0, {.mode = row.mode});
+    EXPECT_NEAR(m.bias_m + m.curve_m + row.energy * m.energy_m, row.sheet_m, 1e-12) << row.model << " " << row.mode;
+  }
+  const LaserModel fine = load_laser("lms291", 0, {.mode = "8m"});
+  EXPECT_LE(fine.bias_m + fine.curve_m, 0.035);
+}
+
 TEST(Noise, BrightAndDarkTargetsErrToOppositeSides) {
   SensorSettings s = exact();
   s.energy = true;
@@ -205,6 +252,8 @@ TEST(Noise, CodesTellWhyThereIsNoRange) {
   const double p = 1 - detection_chance(device.model, weak.reflectivity, 10, s.detection_spread);
   EXPECT_NEAR(share_of(Code::weak, device, weak, s), p, 5 * std::sqrt(p * (1 - p) / beams));
   EXPECT_EQ(share_of(Code::no_echo, device, weak, s), 0);
+  const Target weaker{10, 0.84 * device.model.least_reflectivity(10)};  // below 85 % it is not even heard
+  EXPECT_EQ(share_of(Code::weak, device, weaker, s), 0);
   s.drop_out = 1;
   EXPECT_NEAR(share_of(Code::overflow, device, weak, s), 0.5, 5 * 0.5 / std::sqrt(beams));
   EXPECT_NEAR(share_of(Code::channel, device, weak, s), 0.5, 5 * 0.5 / std::sqrt(beams));
@@ -228,6 +277,21 @@ TEST(Noise, DustLosesLightBothWaysByBeerAndLambert) {
   const double least = device.model.least_reflectivity(9);
   EXPECT_EQ(sample(device, {9, 1.05 * least}, clear, 1).echoes,
             sample(device, {9, 1.05 * least * std::exp(2 * 0.05 * 9)}, dusty, 1).echoes);
+}
+
+TEST(Noise, FogOfAStatedVisibilityEndsSightWhereTheSheetsFogChartDoes) {
+  // Of a visibility V, at which a contrast of 5 % is left, the loss is ln(20) / V = 3 / V a metre. The outdoor type's
+  // chart: 20 % is lost at some 14 m where one sees 50 m, at some 20 m where one sees 100 m; read to a metre or so.
+  const Device device = device_of("lms291");
+  SensorSettings s = exact();
+  s.detection = true;
+  s.detection_spread = 1e-6;
+  for (const auto& [visibility_m, lost_m] : {std::pair{50.0, 14.0}, {100.0, 20.0}}) {
+    s.dust_loss_per_m = 3 / visibility_m;
+    double seen_m = 2;
+    while (std::isfinite(read_one(device, {seen_m, 0.2}, s, 1, 1).range_m)) seen_m += 0.1;
+    EXPECT_NEAR(seen_m, lost_m, 1.2) << visibility_m;
+  }
 }
 
 TEST(Noise, DustEchoesComeByTheLawOfRareEvents) {

@@ -30,10 +30,20 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-TEST(Sensors, TheSameSeedGivesTheSameRecordingOnAnyNumberOfThreads) {
-  const World world = ring_world(20, 4, 2, 1);
-  const Drive drive = round_the_ring(20);
+// Whatever can be switched on.
+SensorSettings everything() {
   SensorSettings s;
+  s.sub_rays = 7;
+  s.range_curve = s.energy = s.warm_up = s.latency = true;
+  s.counter_mm = 10, s.dirty_window = 1.2, s.dust_loss_per_m = s.dust_echo_per_m = 0.02, s.crosstalk = 0.01;
+  s.dazzle_deg = 3;
+  s.faults = {"front freezes from_s=5 to_s=7", "up slips from_s=4 yaw_deg=1", "down loses from_s=1 share=0.5"};
+  return s;
+}
+
+void expect_same_on_any_number_of_threads(SensorSettings s) {
+  const World world = ring_world(20, 4, 2, 1);
+  const Drive drive = round_the_ring(10);
   s.mount_error_deg = 0.2;
   std::vector<Recording> got;
   for (int threads : {1, 2, 7}) {
@@ -48,9 +58,18 @@ TEST(Sensors, TheSameSeedGivesTheSameRecordingOnAnyNumberOfThreads) {
       EXPECT_TRUE(same_bits(got[0].truth.scans[i].range_m, got[n].truth.scans[i].range_m));
       EXPECT_TRUE(same_bits(got[0].truth.scans[i].face, got[n].truth.scans[i].face));
       EXPECT_TRUE(same_bits(got[0].truth.scans[i].incidence_rad, got[n].truth.scans[i].incidence_rad));
+      EXPECT_TRUE(same_bits(got[0].truth.scans[i].fault, got[n].truth.scans[i].fault));
     }
   const Recording other = record(world, drive, load_rig("cart4", 38400), {}, s, 12);
   EXPECT_FALSE(same_bits(got[0].log.scans[0].range_m, other.log.scans[0].range_m));
+}
+
+TEST(Sensors, TheSameSeedGivesTheSameRecordingOnAnyNumberOfThreads) {
+  expect_same_on_any_number_of_threads({});
+}
+
+TEST(Sensors, SoItDoesWithEverythingSwitchedOn) {
+  expect_same_on_any_number_of_threads(everything());
 }
 
 TEST(Sensors, TheLogDoesNotKnowWhereTheWorldLies) {

@@ -37,6 +37,25 @@ TEST(Sweep, RangeInAStraightTunnelIsHalfWidthOverSine) {
   }
 }
 
+TEST(Sweep, RangeOnARampIsTheHeightOverTheSineToItsSlope) {
+  // The tunnel rises by 10 degrees; the laser stands level, 1 m above its floor, its fan along the way.
+  const double slope = 10 * M_PI / 180;
+  World ramp = tunnel_world(80, 4, 2);
+  const Pose X = pose_of({-40, 0, 0}, 0, -slope);
+  const Vec3 foot = X * Vec3(40, 0, 0);
+  for (Vec3& v : ramp.mesh.vertex) v = X * v;
+  const Drive stand = drive_of(0.2, [&](double) { return pose_of(foot, 0); });
+  const Recording r = record(ramp, stand, one_laser("ideal", pose_of({0, 0, 1}, 0, 0, M_PI / 2)), {}, exact(), 1);
+  for (int k = 0; k < 361; ++k) {
+    const double above = r.log.rig.mounts[0].laser.beam_angle_rad(k) - slope;  // of the tunnel's axis
+    if (std::abs(above) < 0.1) continue;                                       // they meet the end
+    const double to_side_m = (above < 0 ? 1 : 2 / std::cos(slope) - 1) * std::cos(slope);
+    EXPECT_NEAR(r.truth.scans[0].range_m[k], to_side_m / std::abs(std::sin(above)), tolerance_m) << k;
+    EXPECT_EQ(r.truth.scans[0].label[k], static_cast<int>(above < 0 ? Label::floor : Label::roof)) << k;
+    EXPECT_NEAR(r.truth.scans[0].incidence_rad[k], std::abs(M_PI / 2 - std::abs(above)), 1e-5) << k;
+  }
+}
+
 TEST(Sweep, RangeInASphereIsTheChord) {
   World world;
   const Vec3 c(3, -2, 1);
