@@ -13,6 +13,7 @@ namespace adit {
 /// A piece of rib as several scans saw it.
 struct Surfel {
   Vec2 p, normal;               // in the map's frame A; the normal points into the void
+  double z_m = 0;               // height in M
   double sigma_normal_rad = 0;  // of its direction, by laser noise
 };
 
@@ -32,12 +33,15 @@ class LocalMap {
     double distance_m;  // of p from the surface, along its normal
     Vec2 normal;
     double sigma_normal_rad;
-    double nearest_m;  // to the nearest surfel
+    double nearest_m;  // to the nearest surfel, in plan
+    double sigma_m;    // of the distance, 1 sd, by what the surfels at other heights do not tell
   };
-  /// Surfels within radius_m (<= 1 m) of p whose normals lie within 60 degrees of `normal` count; none: no rib.
+  /// Surfels within radius_m (<= 1 m) of p in plan whose normals lie within 60 degrees of `normal` count, those at its height
+  /// most; none: no rib. A rib that was seen at other heights alone is an upright one, with its doubt.
   /// @param blend_m reach of the blend of surfels, farther where they lie sparsely; wider blurs the rock (drift 0.05 % at
   ///                0.25 m, 0.03 % at 0.12 m)
-  std::optional<Rib> rib_near(const Vec2& p, const Vec2& normal, double radius_m, double blend_m = 0.12) const;
+  std::optional<Rib> rib_near(const Vec2& p, double z_m, const Vec2& normal, double radius_m,
+                              double blend_m = 0.12) const;
 
  private:
   void index();

@@ -31,6 +31,81 @@ Aligned align(const Odometry& odometry, const std::vector<ScanPoints>& points, c
                       progress);
 }
 
+/// The path of the horizontal laser's scans in the plane.
+struct PlanarMap {
+  Odometry odometry;
+  Aligned aligned;
+  std::vector<Pose2> X_MB;
+};
+
+PlanarMap map_plan(const Log& log, int horizontal, Odometry odometry, const std::vector<Stance>& stances,
+                   const MapSettings& settings, const Progress& progress) {
+  const OdometrySettings found = at_ribs(settings.odometry, odometry);
+  const std::vector<ScanPoints> points =
+      scan_points(log.scans[horizontal], log.rig.mounts[horizontal], odometry.X_MB, found.points, stances);
+  Aligned aligned = align(odometry, points, found.match, settings, progress);
+  std::vector<Pose2> X_MB = rematch(points, aligned.X_MB, settings.rematch, found.match, progress);
+  return {std::move(odometry), std::move(aligned), std::move(X_MB)};
+}
+
+/// For a path that is to be bettered.
+TiltSettings roughly(TiltSettings s) {
+  s.node_m *= s.coarse, s.coarse = 1, s.iterations = std::min(s.iterations, 2);
+  return s;
+}
+
+/// The laser at each scan, by the height, pitch and roll that a first path in the plane leads to.
+std::vector<Stance> stances_of(const Log& log, int horizontal, const Odometry& odometry, const MapSettings& settings,
+                               const Progress& progress) {
+  const Scans& scans = log.scans[horizontal];
+  const Mount& mount = log.rig.mounts[horizontal];
+  const OdometrySettings found = at_ribs(settings.odometry, odometry);
+  const Aligned aligned =
+      align(odometry, scan_points(scans, mount, odometry.X_MB, found.points), found.match, settings, progress);
+  const TiltSolution tilt = solve_tilt(log, scans.stamp_s, aligned.X_MB, roughly(settings.tilt), progress);
+  return stances_along(tilt.dense, scans.stamp_s, mount, fan_of(mount).scan_s());
+}
+
+/// A laser that pitches and rolls sees other rock in every scan, and only what lies at one height is the same: where the rig
+/// tells height, pitch and roll all is matched once more, each beam where it was in space.
+PlanarMap map_plan(const Log& log, int horizontal, Odometry odometry, const MapSettings& settings,
+                   const Progress& progress) {
+  std::vector<Stance> stances;
+  if (settings.in_space && settings.method == "robust" && find_view(log.rig, View::forward_vertical) >= 0) {
+    stances = stances_of(log, horizontal, odometry, settings, progress);
+    Odometry again =
+        estimate_motion(log.scans[horizontal], log.rig.mounts[horizontal], settings.odometry, progress, stances);
+    if (again.breaks.empty())
+      odometry = std::move(again);
+    else
+      stances.clear();
+  }
+  return map_plan(log, horizontal, std::move(odometry), stances, settings, progress);
+}
+
+/// What the path in the plane tells.
+void take(PlanarMap plan, Estimate& estimate) {
+  const Odometry& odometry = plan.odometry;
+  estimate.open_loop = odometry.X_MB;
+  estimate.degenerate = odometry.degenerate;
+  if (odometry.lost > 0)
+    estimate.notes.push_back(std::to_string(odometry.lost) + " scans could not be matched; their motion is predicted");
+  if (odometry.uneven) {
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  "ribs are uneven: a scan finds them off the map by %.2f m, 1 sd, as the laser tilts",
+                  odometry.rib_sigma_m);
+    estimate.notes.push_back(text);
+  }
+  estimate.planar = std::move(plan.X_MB);
+  estimate.rounds = std::move(plan.aligned.rounds);
+  estimate.converged = plan.aligned.converged;
+  estimate.closures = std::move(plan.aligned.closures);
+  estimate.graph = std::move(plan.aligned.graph);
+  estimate.covariance.assign(plan.aligned.covariance.begin(), plan.aligned.covariance.end());
+  estimate.notes.insert(estimate.notes.end(), plan.aligned.notes.begin(), plan.aligned.notes.end());
+}
+
 bool nods(const Log& log) {
   return std::any_of(log.scans.begin(), log.scans.end(), [](const Scans& s) { return !s.tilt_rad.empty(); });
 }
@@ -133,7 +208,8 @@ Estimate map_longest_piece(const Log& log, const std::vector<double>& stamp_s, c
 }  // namespace
 
 Fields fields(MapSettings& s) {
-  Fields all{{"method", &s.method, "of the global alignment", {"robust", "icra2003"}}};
+  Fields all{{"method", &s.method, "of the global alignment", {"robust", "icra2003"}},
+             {"in_space", &s.in_space, "match a second time, in space, where the rig sees height, pitch and roll"}};
   append(all, "odometry", fields(s.odometry));
   append(all, "icra2003", fields(s.icra2003));
   append(all, "robust", fields(s.robust));
@@ -159,35 +235,13 @@ Estimate make_map(const Log& given, const MapSettings& settings, const Progress&
   estimate.method = settings.method;
   estimate.path.stamp_s = scans.stamp_s;
 
-  const Odometry odometry = estimate_motion(scans, mount, settings.odometry, progress);
+  Odometry odometry = estimate_motion(scans, mount, settings.odometry, progress);
   if (!odometry.breaks.empty()) {
     Estimate piece = map_longest_piece(all, scans.stamp_s, odometry.breaks, settings, progress);
     piece.notes.insert(piece.notes.begin(), estimate.notes.begin(), estimate.notes.end());
     return piece;
   }
-  estimate.open_loop = odometry.X_MB;
-  estimate.degenerate = odometry.degenerate;
-  if (odometry.lost > 0)
-    estimate.notes.push_back(std::to_string(odometry.lost) + " scans could not be matched; their motion is predicted");
-
-  if (odometry.uneven) {
-    char text[120];
-    std::snprintf(text, sizeof text,
-                  "ribs are uneven: a scan finds them off the map by %.2f m, 1 sd, as the laser tilts",
-                  odometry.rib_sigma_m);
-    estimate.notes.push_back(text);
-  }
-
-  const OdometrySettings found = at_ribs(settings.odometry, odometry);
-  const std::vector<ScanPoints> points = scan_points(scans, mount, odometry.X_MB, found.points);
-  Aligned aligned = align(odometry, points, found.match, settings, progress);
-  estimate.planar = rematch(points, aligned.X_MB, settings.rematch, found.match, progress);
-  estimate.rounds = std::move(aligned.rounds);
-  estimate.converged = aligned.converged;
-  estimate.closures = std::move(aligned.closures);
-  estimate.graph = std::move(aligned.graph);
-  estimate.covariance.assign(aligned.covariance.begin(), aligned.covariance.end());
-  estimate.notes.insert(estimate.notes.end(), aligned.notes.begin(), aligned.notes.end());
+  take(map_plan(log, h, std::move(odometry), settings, progress), estimate);
 
   // Height is mostly one factorisation on one thread: the grid is drawn beside it.
   parallel_for(2, [&](size_t task) {

@@ -34,12 +34,12 @@ Linear linearise(const ScanPoints& scan, const LocalMap& map, const Pose2& X, do
     const Vec2 &p = scan.p_B[k], &m = scan.normal_B[k];
     const Vec2 q(X.x_m + c * p.x() - sn * p.y(), X.y_m + sn * p.x() + c * p.y());
     const std::optional<LocalMap::Rib> rib =
-        map.rib_near(q, Vec2(c * m.x() - sn * m.y(), sn * m.x() + c * m.y()), gate_m);
+        map.rib_near(q, scan.z_m[k], Vec2(c * m.x() - sn * m.y(), sn * m.x() + c * m.y()), gate_m);
     if (!rib) continue;
     ++out.pairs;
     const double r = rib->distance_m;
     const double lean = rib->sigma_normal_rad * rib->nearest_m;
-    const double var = scan.sigma_m[k] * scan.sigma_m[k] + map_var + lean * lean;
+    const double var = scan.sigma_m[k] * scan.sigma_m[k] + map_var + lean * lean + rib->sigma_m * rib->sigma_m;
     const double chi2 = r * r / var;
     const double root_w = 1 / (1 + chi2 / robust_var);  // Geman-McClure
     const double w = root_w * root_w;
@@ -114,7 +114,7 @@ double fine_score(const ScanPoints& scan, const LocalMap& map, const Pose2& X) {
   for (size_t k = 0; k < scan.size(); ++k) {
     const Vec2& m = scan.normal_B[k];
     const Vec2 q = X * scan.p_B[k];
-    const std::optional<LocalMap::Rib> rib = map.rib_near(q, Vec2(c * m.x() - s * m.y(), s * m.x() + c * m.y()), 0.4);
+    const std::optional<LocalMap::Rib> rib = map.rib_near(q, scan.z_m[k], Vec2(c * m.x() - s * m.y(), s * m.x() + c * m.y()), 0.4);
     if (!rib) continue;
     const double r = rib->distance_m / 0.1;
     sum += std::exp(-r * r / 2);
@@ -273,7 +273,7 @@ double uneven_m(const ScanPoints& scan, const LocalMap& map, const Pose2& X_AB, 
   for (size_t k = 0; k < scan.size(); k += 2) {
     const Vec2& m = scan.normal_B[k];
     const auto rib =
-        map.rib_near(X_AB * scan.p_B[k], Vec2(c * m.x() - sn * m.y(), sn * m.x() + c * m.y()), reach_m, blend_m);
+        map.rib_near(X_AB * scan.p_B[k], scan.z_m[k], Vec2(c * m.x() - sn * m.y(), sn * m.x() + c * m.y()), reach_m, blend_m);
     if (rib) off2.push_back(rib->distance_m * rib->distance_m - scan.sigma_m[k] * scan.sigma_m[k]);
   }
   if (off2.empty()) return 0;
@@ -320,6 +320,7 @@ ScanPoints join_scans(std::span<const ScanPoints* const> scans, std::span<const 
   for (const Surfel& s : joined.surfels()) {
     out.p_B.push_back(s.p);
     out.normal_B.push_back(s.normal);
+    out.z_m.push_back(s.z_m);
     out.sigma_m.push_back(sigma_m / count);
     out.sigma_normal_rad.push_back(s.sigma_normal_rad);
   }

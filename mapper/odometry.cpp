@@ -80,17 +80,19 @@ struct Step {
 class Tracker {
  public:
   /// @param learns  takes ribs for as uneven as the scans before have shown them to be
-  Tracker(const Scans& scans, const Mount& mount, const OdometrySettings& s, bool learns)
+  Tracker(const Scans& scans, const Mount& mount, const OdometrySettings& s, bool learns,
+          const std::vector<Stance>& stances)
       : scans_(scans),
+        stances_(stances),
         fan_(fan_of(mount)),
         s_(s),
         match_(s.match),
         learns_(learns),
-        scan_s_(fan_.offset_s.empty() ? 0 : scan_time(fan_)),
+        scan_s_(fan_.scan_s()),
         nods_at_stands_(mount.tilt.nods() && mount.tilt.standing_only) {}
 
   void begin() {
-    const ScanPoints points = scan_points(scans_[0], fan_, {}, s_.points);
+    const ScanPoints points = points_of(0, {});
     add_key({points, Pose2{}});
   }
 
@@ -102,11 +104,11 @@ class Tracker {
     Step out;
     out.X_MB = predicted;
     out.information = prior.information;
-    out.points = scan_points(scans_[i], fan_, twist_, s_.points);
+    out.points = points_of(i, twist_);
     std::optional<Match> match = gap ? std::nullopt : place(out.points, predicted, prior, X_before, dt_s);
     if (match && worth_a_second_look(X_before, match->X_AB, dt_s)) {
       const Twist2 better = twist_of(X_before.inverse() * match->X_AB, dt_s);
-      out.points = scan_points(scans_[i], fan_, better, s_.points);
+      out.points = points_of(i, better);
       match = place(out.points, match->X_AB, prior, X_before, dt_s);
     }
     if (!match) match = search(out.points, predicted, X_before, dt_s);
@@ -136,7 +138,9 @@ class Tracker {
   static constexpr double sure_share = 0.7;  // of a scan's points on the map, to know where one is after a gap
   static constexpr int lost_for_good = 5;    // scans in a row; then the map begins anew where the prediction ended
 
-  static double scan_time(const BeamFan& fan) { return *std::max_element(fan.offset_s.begin(), fan.offset_s.end()); }
+  ScanPoints points_of(size_t i, const Twist2& twist) const {
+    return scan_points(scans_[i], fan_, twist, s_.points, stances_.empty() ? nullptr : &stances_[i]);
+  }
 
   bool plausible(const Match& m, const Pose2& X_before, double dt_s) const {
     const Pose2 step = X_before.inverse() * m.X_AB;
@@ -195,6 +199,7 @@ class Tracker {
   }
 
   const Scans& scans_;
+  const std::vector<Stance>& stances_;
   const BeamFan fan_;
   const OdometrySettings& s_;
   MatchSettings match_;  // as the ribs of the last seconds are
@@ -255,7 +260,7 @@ void weaken(const std::vector<double>& stamp_s, const std::vector<Weak>& weak,
 }
 
 Odometry track(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings, bool learns,
-               const Progress& progress) {
+               const std::vector<Stance>& stances, const Progress& progress) {
   const size_t n = scans.size();
   Odometry out;
   out.stamp_s = scans.stamp_s;
@@ -265,7 +270,7 @@ Odometry track(const Scans& scans, const Mount& horizontal, const OdometrySettin
   out.jitter.assign(n, Mat3::Zero());
   std::vector<Weak> weak(n);
   std::vector<double> rib_sigma_m{settings.match.map_sigma_m};
-  Tracker tracker(scans, horizontal, settings, learns);
+  Tracker tracker(scans, horizontal, settings, learns, stances);
   tracker.begin();
   for (size_t i = 1; i < n; ++i) {
     const Step step = tracker.advance(i, out.X_MB[i - 1], scans.stamp_s[i] - scans.stamp_s[i - 1]);
@@ -282,7 +287,7 @@ Odometry track(const Scans& scans, const Mount& horizontal, const OdometrySettin
   const auto middle = rib_sigma_m.begin() + static_cast<std::ptrdiff_t>(rib_sigma_m.size() / 2);
   std::nth_element(rib_sigma_m.begin(), middle, rib_sigma_m.end());
   out.rib_sigma_m = *middle;
-  out.steadiness = learns ? 1 : settings.steadiness;
+  out.steadiness = learns ? 1 : stances.empty() ? settings.steadiness : settings.steadiness_in_space;
   out.degenerate = stretches_of(scans.stamp_s, weak, settings);
   weaken(scans.stamp_s, weak, out.degenerate, out.information);
   return out;
@@ -308,6 +313,7 @@ Fields fields(OdometrySettings& s) {
       {"uneven_range_m", &s.uneven_range_m, "range_max_m where ribs are uneven, if that is less", 1, 1000},
       {"steadiness", &s.steadiness, "how many times less than its scans' errors the map of even ribs drifts, variances",
        1, 1000},
+      {"steadiness_in_space", &s.steadiness_in_space, "the same where scans are matched in space", 1, 1000},
       {"information_scale", &s.information_scale, "of a step against that of its match, by trial", 1e-6, 1e6}};
   all.insert(all.end(), own.begin(), own.end());
   return all;
@@ -321,18 +327,19 @@ OdometrySettings at_ribs(const OdometrySettings& settings, const Odometry& odome
 }
 
 Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings,
-                         const Progress& progress) {
+                         const Progress& progress, const std::vector<Stance>& stances) {
   const size_t n = scans.size();
+  ADIT_CHECK(stances.empty() || stances.size() == n);
   if (n == 0) throw Error("laser '" + horizontal.name + "': no scan; a map needs at least one");
   for (size_t i = 1; i < n; ++i)
     if (!(scans.stamp_s[i] > scans.stamp_s[i - 1]))
       throw Error("laser '" + horizontal.name + "': scan " + std::to_string(i) + ": its stamp, " +
                   std::to_string(scans.stamp_s[i]) + " s, is not after that of the scan before; stamps must grow");
-  Odometry even = track(scans, horizontal, settings, false, progress);
+  Odometry even = track(scans, horizontal, settings, false, stances, progress);
   if (even.rib_sigma_m <= settings.uneven_from * settings.match.map_sigma_m) return even;
   OdometrySettings patient = seeing_far(settings);
   patient.match.iterations *= 3;  // pairs flip to and fro between the layers of the map
-  Odometry uneven = track(scans, horizontal, patient, true, progress);
+  Odometry uneven = track(scans, horizontal, patient, true, stances, progress);
   uneven.uneven = true;
   return uneven;
 }

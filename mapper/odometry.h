@@ -39,13 +39,14 @@ struct OdometrySettings {
   double key_step_deg = 10;
   double speed_change_m_s2 = 0.5;  // 1 sd of the change of speed, for the prediction
   double turn_change_deg_s2 = 40;
-  double speed_spread_m_s = 0.2;  // of the speed about its mean, 1 sd: what degenerate stretches may be wrong by
-  double new_share = 0.1;         // of a scan's points not on the map, for it to be a new key scan
-  double information_scale = 1;   // of a step against that of its match
-  double uneven_from = 1.5;       // times match.map_sigma_m: ribs beyond that are uneven
-  double uneven_range_m = 20;     // points.range_max_m there, if that is less: what is far holds the heading
-  double steadiness = 8;          // see Odometry; where ribs are even
-  double search_m = 0.6;          // half width of the search when the refiner fails
+  double speed_spread_m_s = 0.2;    // of the speed about its mean, 1 sd: what degenerate stretches may be wrong by
+  double new_share = 0.1;           // of a scan's points not on the map, for it to be a new key scan
+  double information_scale = 1;     // of a step against that of its match
+  double uneven_from = 1.5;         // times match.map_sigma_m: ribs beyond that are uneven
+  double uneven_range_m = 20;       // points.range_max_m there, if that is less: what is far holds the heading
+  double steadiness = 8;            // see Odometry; where ribs are even
+  double steadiness_in_space = 20;  // the same where stances are known
+  double search_m = 0.6;            // half width of the search when the refiner fails
   double search_deg = 25;
   double most_speed_m_s = 3;  // a faster match is a wrong one
 };
@@ -63,7 +64,8 @@ OdometrySettings at_ribs(const OdometrySettings& settings, const Odometry& odome
 /// scan) all is done again with the sigma that they are found to have, learnt along the way.
 /// @param scans at least one, stamps that grow, else Error; a scan without a single rib point moves as predicted and
 /// counts as lost
+/// @param stances  of the laser at each scan, or none: with them scans are matched in space
 Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings,
-                         const Progress& progress = {});
+                         const Progress& progress = {}, const std::vector<Stance>& stances = {});
 
 }  // namespace adit

@@ -18,12 +18,14 @@ struct Echoes {
   std::vector<Vec2> p_B;
   std::vector<Vec2> ray_B;  // unit, from the laser to the point
   std::vector<double> range_m;
+  std::vector<double> z_m;
   std::vector<std::int32_t> beam;
 };
 
-Echoes echoes_of(std::span<const float> range_m, const BeamFan& fan, const Twist2& twist, const ScanPointSettings& s) {
+Echoes echoes_of(std::span<const float> range_m, const BeamFan& fan, const Twist2& twist, const ScanPointSettings& s,
+                 const Stance* stance) {
   Echoes e;
-  e.p_B.reserve(range_m.size()), e.ray_B.reserve(range_m.size());
+  e.p_B.reserve(range_m.size()), e.ray_B.reserve(range_m.size()), e.z_m.reserve(range_m.size());
   e.range_m.reserve(range_m.size()), e.beam.reserve(range_m.size());
   for (size_t k = 0; k < range_m.size(); ++k) {
     const double r = range_m[k];
@@ -31,12 +33,15 @@ Echoes echoes_of(std::span<const float> range_m, const BeamFan& fan, const Twist
     const double t = fan.offset_s[k];
     const double a = twist.yaw_rad_s * t;
     const double cos_a = 1 - a * a / 2, sin_a = a * (1 - a * a / 6);  // a turn within one scan is small
-    const Vec2& d = fan.direction_B[k];
+    const Vec3 d3 = stance ? Vec3((stance->R_BS + t * stance->R_BS_s).leftCols<2>() * fan.direction_S[k])
+                           : Vec3(fan.direction_B[k].x(), fan.direction_B[k].y(), 0);
+    const Vec2 d = d3.head<2>();
     const Vec2 q = fan.origin_B + r * d;
     e.p_B.emplace_back(cos_a * q.x() - sin_a * q.y() + twist.x_m_s * t,
                        sin_a * q.x() + cos_a * q.y() + twist.y_m_s * t);
     e.ray_B.emplace_back(cos_a * d.x() - sin_a * d.y(), sin_a * d.x() + cos_a * d.y());
     e.range_m.push_back(r);
+    e.z_m.push_back(stance ? stance->z_m + t * stance->z_m_s + r * d3.z() : 0);
     e.beam.push_back(static_cast<std::int32_t>(k));
   }
   return e;
@@ -156,6 +161,7 @@ BeamFan fan_of(const Mount& mount) {
   fan.sigma_m = std::max(laser.sigma_m, 0.002);  // a stated noise of zero would trust the last millimetre
   for (int k = 0; k < laser.beams; ++k) {
     const double a = laser.beam_angle_rad(k);
+    fan.direction_S.push_back({std::cos(a), std::sin(a)});
     fan.direction_B.push_back((mount.X_BS.linear() * Vec3(std::cos(a), std::sin(a), 0)).head<2>());
     fan.offset_s.push_back(laser.beam_offset_s(k));
   }
@@ -179,9 +185,9 @@ Pose2 pose_after(const Twist2& twist, double dt_s) {
 }
 
 ScanPoints scan_points(std::span<const float> range_m, const BeamFan& fan, const Twist2& twist,
-                       const ScanPointSettings& s) {
+                       const ScanPointSettings& s, const Stance* stance) {
   ADIT_CHECK(range_m.size() == fan.direction_B.size());
-  const Echoes e = echoes_of(range_m, fan, twist, s);
+  const Echoes e = echoes_of(range_m, fan, twist, s, stance);
   const Runs runs = runs_of(e, fan, s);
   const LineSums sums(e.p_B);
   ScanPoints out;
@@ -193,13 +199,14 @@ ScanPoints scan_points(std::span<const float> range_m, const BeamFan& fan, const
     out.normal_B.push_back(rib->normal);
     out.sigma_m.push_back(rib->sigma_m);
     out.sigma_normal_rad.push_back(rib->sigma_normal_rad);
+    out.z_m.push_back(e.z_m[i]);
     out.beam.push_back(e.beam[i]);
   }
   return out;
 }
 
 void ScanPoints::reserve(size_t n) {
-  p_B.reserve(n), normal_B.reserve(n), sigma_m.reserve(n), sigma_normal_rad.reserve(n), beam.reserve(n);
+  p_B.reserve(n), normal_B.reserve(n), sigma_m.reserve(n), sigma_normal_rad.reserve(n), z_m.reserve(n), beam.reserve(n);
 }
 
 std::vector<Twist2> twists_of(const std::vector<double>& stamp_s, const std::vector<Pose2>& X_MB) {
@@ -214,13 +221,17 @@ std::vector<Twist2> twists_of(const std::vector<double>& stamp_s, const std::vec
 }
 
 std::vector<ScanPoints> scan_points(const Scans& scans, const Mount& mount, const std::vector<Pose2>& X_MB,
-                                    const ScanPointSettings& settings) {
-  ADIT_CHECK(scans.size() == X_MB.size());
+                                    const ScanPointSettings& settings, const std::vector<Stance>& stances) {
+  ADIT_CHECK(scans.size() == X_MB.size() && (stances.empty() || stances.size() == scans.size()));
   const BeamFan fan = fan_of(mount);
   const std::vector<Twist2> twists = twists_of(scans.stamp_s, X_MB);
   std::vector<ScanPoints> out(scans.size());
   parallel_for(
-      scans.size(), [&](size_t i) { out[i] = scan_points(scans[i], fan, twists[i], settings); }, 64);
+      scans.size(),
+      [&](size_t i) {
+        out[i] = scan_points(scans[i], fan, twists[i], settings, stances.empty() ? nullptr : &stances[i]);
+      },
+      64);
   return out;
 }
 

@@ -3,7 +3,9 @@
 
 #include "base/config.h"
 #include "base/recording.h"
+#include "mapper/stance.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,6 +30,7 @@ struct ScanPoints {
   std::vector<double>
       sigma_m;  // (n) of the point along its normal, 1 sd: laser noise and what the line does not explain
   std::vector<double> sigma_normal_rad;  // (n) of the normal's direction, 1 sd, by laser noise alone
+  std::vector<double> z_m;               // (n) height in M; 0 where the laser's stance is not known
   std::vector<std::int32_t> beam;        // (n)
 
   size_t size() const { return p_B.size(); }
@@ -48,19 +51,24 @@ Pose2 pose_after(const Twist2& twist, double dt_s);
 struct BeamFan {
   Vec2 origin_B = Vec2::Zero();
   std::vector<Vec2> direction_B;  // (beams) in plan; shorter than 1 where the mount tilts a beam
+  std::vector<Vec2> direction_S;  // (beams) in the plane of the scan
   std::vector<double> offset_s;   // (beams) after the stamp
   double step_rad = 0;            // between neighbours
   double sigma_m = 0;             // of one range, 1 sd
+
+  double scan_s() const { return *std::max_element(offset_s.begin(), offset_s.end()); }
 };
 BeamFan fan_of(const Mount& mount);
 
 /// Points of one scan, each beam taken back to the stamp by the motion. @param range_m (beams of the fan)
+/// @param stance  of the laser, if it is known; else its beams count as the fan has them, all at one height
 ScanPoints scan_points(std::span<const float> range_m, const BeamFan& fan, const Twist2& twist,
-                       const ScanPointSettings& settings);
+                       const ScanPointSettings& settings, const Stance* stance = nullptr);
 
 /// All scans, undone by the motion that the poses X_MB (one a scan) tell. Parallel.
+/// @param stances  one a scan, or none
 std::vector<ScanPoints> scan_points(const Scans& scans, const Mount& mount, const std::vector<Pose2>& X_MB,
-                                    const ScanPointSettings& settings = {});
+                                    const ScanPointSettings& settings = {}, const std::vector<Stance>& stances = {});
 /// The motion at each scan as told by poses: from the scan before to the scan after, the ends one-sided. (n)
 std::vector<Twist2> twists_of(const std::vector<double>& stamp_s, const std::vector<Pose2>& X_MB);
 
