@@ -26,8 +26,8 @@ class Autopilot {
   double length_m_;
   double go_at_s_;        // stands until then
   double halt_at_m_ = 0;  // the next stop, or the end
-  bool arrived_ = false, turning_ = false;
-  bool turns_left_ = false;  // the way round that the present turn began
+  bool arrived_ = false;
+  SpotTurn turn_;
   double speed_mps_ = 0, turn_rad_s_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include "sim/relief.h"
 #include "sim/remote.h"
 #include "sim/sim.h"
+#include "sim/struggle.h"
 #include "sim/watch.h"
 
 #include <algorithm>
@@ -25,19 +26,8 @@ constexpr double settle_s = 15;   // longest time to come to rest before the dri
 constexpr double still = 5e-3;    // m/s and rad/s
 constexpr double still_for_s = 0.2;
 constexpr double line_m = 0.25;                  // between points of the line that was driven
+constexpr double run_mps = 1.2;                  // with which a person comes again where a cart got stuck
 constexpr double shift_m = 0.01, shift_s = 1.5;  // so near to where forward and backward change it stops, and so long
-
-void check(const DriveSettings& settings) {
-  if (settings.step_hz % settings.sample_hz != 0)
-    throw Error(say("drive.sample_hz = %d must divide drive.step_hz = %d", settings.sample_hz, settings.step_hz));
-  if (settings.stop_gap_min_m > settings.stop_gap_max_m)
-    throw Error("drive.stop_gap_min_m must not exceed stop_gap_max_m");
-  if (settings.stop_min_s > settings.stop_max_s) throw Error("drive.stop_min_s must not exceed stop_max_s");
-  if (settings.track_share + settings.rubble_share > 1)
-    throw Error(say("drive.track_share = %g and drive.rubble_share = %g: their sum must not be above 1",
-                    settings.track_share, settings.rubble_share));
-  if (settings.wobble_min_hz > settings.wobble_max_hz) throw Error("drive.wobble_min_hz must not exceed wobble_max_hz");
-}
 
 void check_width(const World& world, const Route& route, const Vehicle& vehicle) {
   for (const int id : route.passages) {
@@ -193,8 +183,10 @@ class Run {
       if (t_s < *shift_at_s_) return {};
       shift_at_s_.reset();
       follower_.shift();
+      struggle_.give_up();
       look();
     }
+    if (const auto again = struggle_.want(t_s, step_s_, along_m_, guide_, motion_)) return *again;
     Intent intent;
     if (auto* pusher = std::get_if<Pusher>(&driver_)) intent = pusher->want(t_s, step_s_, along_m_, guide_);
     if (auto* autopilot = std::get_if<Autopilot>(&driver_)) intent = autopilot->want(t_s, step_s_, along_m_, guide_);
@@ -203,8 +195,9 @@ class Run {
   }
 
   Effort effort(const Intent& intent) {
-    if (vehicle_.drivetrain == Drivetrain::skid_steer) return steer(vehicle_, intent, guide_.curvature);
-    return push(vehicle_, intent, guide_.curvature, motion_, step_s_, hands_);
+    const double curvature = struggle_.curvature(guide_.curvature);
+    if (vehicle_.drivetrain == Drivetrain::skid_steer) return steer(vehicle_, intent, curvature);
+    return push(vehicle_, intent, curvature, motion_, step_s_, hands_);
   }
 
   void step(double t_s) {
@@ -226,9 +219,20 @@ class Run {
   bool went_wrong(double t_s) {
     const Headway headway{t_s, along_m_, drive_.driven_m, guide_, by_route()};
     const std::optional<Trouble> trouble = watch_.look(headway, motion_, effort_, *physics_);
-    if (!trouble) return false;
+    if (!trouble || (trouble->held_up && by_route() && tries_again(t_s, trouble->end == DriveEnd::blocked)))
+      return false;
     drive_.end = trouble->end;
     drive_.cause = trouble->cause;
+    if (trouble->held_up && by_route()) drive_.cause += say("; %d more tries did not help", struggle_.tries());
+    return true;
+  }
+
+  bool tries_again(double t_s, bool against_rock) {
+    const bool pushed = vehicle_.drivetrain == Drivetrain::pushed;
+    const double walk_mps = pushed ? settings_.speed_mps : settings_.robot_speed_mps;
+    if (!struggle_.again(t_s, along_m_, motion_, against_rock, walk_mps, pushed ? run_mps : walk_mps)) return false;
+    hands_ = {};
+    watch_.stands(t_s);
     return true;
   }
 
@@ -262,6 +266,7 @@ class Run {
   Motion motion_;
   Guide guide_;
   Hands hands_;
+  Struggle struggle_;
   Effort effort_;
   Drive drive_;
   double along_m_ = 0, still_s_ = 0;
@@ -272,34 +277,6 @@ class Run {
 };
 
 }  // namespace
-
-Fields fields(DriveSettings& s) {
-  return {{"speed_mps", &s.speed_mps, "mean walking speed", 0.05, 3},
-          {"speed_sd_mps", &s.speed_sd_mps, "spread of the walking speed over the way", 0, 1},
-          {"stop_gap_min_m", &s.stop_gap_min_m, "least way between two stops", 1, 1e6},
-          {"stop_gap_max_m", &s.stop_gap_max_m, "greatest way between two stops", 1, 1e6},
-          {"stop_min_s", &s.stop_min_s, "shortest stop", 0, 3600},
-          {"stop_max_s", &s.stop_max_s, "longest stop", 0, 3600},
-          {"lead_in_s", &s.lead_in_s, "stands before the drive and after it", 0, 600},
-          {"gait_ripple", &s.gait_ripple, "ripple of the speed with each step, as a share of it", 0, 0.5},
-          {"gait_hz", &s.gait_hz, "steps a second at mean speed", 0, 4},
-          {"wobble_deg", &s.wobble_deg, "sway of the heading", 0, 10},
-          {"wobble_min_hz", &s.wobble_min_hz, "slowest sway", 0, 3},
-          {"wobble_max_hz", &s.wobble_max_hz, "quickest sway", 0, 3},
-          {"turn_max_deg_s", &s.turn_max_deg_s, "turn rate that bends are walked with at most", 1, 180},
-          {"robot_speed_mps", &s.robot_speed_mps, "of a vehicle that is not pushed", 0.02, 3},
-          {"scan_every_m", &s.scan_every_m, "way between a robot's stops for a scan, 0: it never stops", 0, 1e6},
-          {"scan_stop_s", &s.scan_stop_s, "how long it stands there", 0, 3600},
-          {"ground",
-           &s.ground,
-           "what the wheels meet on the floor: smooth is the mesh alone",
-           {"smooth", "track", "rubble", "mixed"}},
-          {"track_share", &s.track_share, "of the passages' length that has track, where the ground is mixed", 0, 1},
-          {"rubble_share", &s.rubble_share, "and that has rubble", 0, 1},
-          {"commands", &s.commands, "CSV file time_s,speed_mps,turn_rate_rad_s to drive by, in place of the route"},
-          {"step_hz", &s.step_hz, "steps of the physics a second", 120, 2000},
-          {"sample_hz", &s.sample_hz, "poses of the path a second; divides step_hz", 120, 2000}};
-}
 
 Drive drive(const World& world, const Route& route, const Vehicle& vehicle, const DriveSettings& settings,
             std::uint64_t seed, const std::function<void(Drive&&)>& take, const Progress& progress) {

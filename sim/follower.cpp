@@ -13,8 +13,22 @@ namespace {
 
 constexpr double tightest = 2.5;  // 1/m, of the axle's path
 constexpr double manoeuvre_m = 2.5, manoeuvre_lookahead_m = 0.4;
+constexpr double turn_from_rad = std::numbers::pi / 2, turn_to_rad = 0.15;  // off the way on: begins and ends a turn
+constexpr double creep_s = 2, creep_max_mps = 0.15;
 
 }  // namespace
+
+bool SpotTurn::look(const Guide& guide) {
+  const double off_rad = std::abs(guide.bearing_rad);
+  const bool begins = !on_;
+  on_ = off_rad > (on_ ? turn_to_rad : turn_from_rad);
+  if (begins || off_rad < turn_from_rad) left_ = guide.bearing_rad > 0;
+  return on_;
+}
+
+double SpotTurn::creep_mps(const Guide& guide) const {
+  return std::clamp(-guide.ahead_m / creep_s, -creep_max_mps, creep_max_mps);
+}
 
 Follower::Follower(const Route& route) {
   std::vector<size_t> kept;  // which point of the line a point of the route became
@@ -98,6 +112,7 @@ Guide Follower::look(const Pose2& X_WF, double lookahead_m) {
   const double heading = heading_rad(foot_m_);
   const Vec2 off = X_WA.position() - point(foot_m_);
   guide.cross_m = -std::sin(heading) * off.x() + std::cos(heading) * off.y();
+  guide.ahead_m = off.dot(Vec2(std::cos(X_WA.yaw_rad), std::sin(X_WA.yaw_rad)));
   const Vec2 goal_A = X_WA.inverse() * goal(lookahead_m);
   guide.bearing_rad = std::atan2(goal_A.y(), goal_A.x());
   const double arc = 2 * goal_A.y() / std::max(goal_A.squaredNorm(), 0.25 * lookahead_m * lookahead_m);

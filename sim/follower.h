@@ -13,11 +13,27 @@ namespace adit {
 struct Guide {
   double along_m = 0;          // of the route's length, at the foot of the axle; below 0 before its start
   double cross_m = 0;          // axle left of the route
+  double ahead_m = 0;          // axle ahead of its foot on the route, as the end that leads points
   double curvature = 0;        // 1/m, to steer now; > 0 turns left
   double bearing_rad = 0;      // of the point that is steered for, from straight ahead; > 0 on the left
   double curvature_ahead = 0;  // 1/m, greatest to be steered from here to a metre and a half ahead, without sign
   bool backward = false;       // the route is driven tail first here: bearing and curvature are those of the tail
   double shift_in_m = std::numeric_limits<double>::infinity();  // way to where forward and backward change
+};
+
+/// A turn on the spot, where the way on lies behind. Near the opposite direction every jolt changes the side on which the
+/// way on lies: the side that the turn began to is kept until that is plain.
+class SpotTurn {
+ public:
+  bool on() const { return on_; }
+  /// @return  whether it turns now
+  bool look(const Guide& guide);
+  double side() const { return left_ ? 1 : -1; }  // to turn to; 1: left
+  /// Speed along its nose that brings it back to its place, off which slipping tyres move it while it turns.
+  double creep_mps(const Guide& guide) const;
+
+ private:
+  bool on_ = false, left_ = false;
 };
 
 /// Keeps a vehicle on its route by pure pursuit of a point ahead (Coulter, "Implementation of the pure pursuit path

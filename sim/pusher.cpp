@@ -14,6 +14,7 @@ constexpr double pi = std::numbers::pi;
 constexpr double knot_s = 8;  // a person's pace changes over some such time
 constexpr double accelerate_mps2 = 0.5;
 constexpr double brake_mps2 = 0.3;
+constexpr double swing_rad_s2 = 1;                      // in turns on the spot
 constexpr double slowest_mps = 0.08;                    // on the last centimetres before a halt
 constexpr double speed_lag_s = 0.25, turn_lag_s = 0.1;  // of the controller
 constexpr double hold_rad_s = 8;                        // how stiffly the handle is held
@@ -93,7 +94,11 @@ Intent Pusher::want(double t_s, double step_s, double along_m, const Guide& guid
   limit = std::min(limit, settings_.turn_max_deg_s * pi / 180 / std::max(guide.curvature_ahead, 1e-3));
   const double to_halt_m = std::min(left_m, std::max(0.0, guide.shift_in_m));
   limit = std::min(limit, std::max(slowest_mps, std::sqrt(2 * brake_mps2 * to_halt_m)));
+  if (turn_.look(guide)) limit = 0;
   speed_mps_ = std::clamp(limit, speed_mps_ - 2 * brake_mps2 * step_s, speed_mps_ + accelerate_mps2 * step_s);
+  const double swing = turn_.on() && speed_mps_ == 0 ? turn_.side() * settings_.turn_max_deg_s * pi / 180 : 0;
+  swing_rad_s_ =
+      turn_.on() ? std::clamp(swing, swing_rad_s_ - swing_rad_s2 * step_s, swing_rad_s_ + swing_rad_s2 * step_s) : 0;
   // People take quicker steps to walk faster, about with the root of the speed.
   const double pace = std::sqrt(speed_mps_ / settings_.speed_mps);
   gait_rad_ += 2 * pi * settings_.gait_hz * pace * step_s;
@@ -105,7 +110,10 @@ Intent Pusher::want(double t_s, double step_s, double along_m, const Guide& guid
   intent.hold = false;
   intent.speed_mps = speed_mps_ * (1 + settings_.gait_ripple * std::sin(gait_rad_));
   intent.wobble_rad_s =
-      sway_size * 2 * pi * sway_hz * std::cos(sway_rad_) * std::min(1.0, speed_mps_ / settings_.speed_mps);
+      sway_size * 2 * pi * sway_hz * std::cos(sway_rad_) * std::min(1.0, speed_mps_ / settings_.speed_mps) +
+      swing_rad_s_;
+  intent.on_the_spot = turn_.on() && speed_mps_ == 0;
+  if (intent.on_the_spot) intent.speed_mps = turn_.creep_mps(guide);
   return intent;
 }
 
@@ -115,7 +123,7 @@ Effort push(const Vehicle& vehicle, const Intent& intent, double curvature, cons
   if (hands.holds) hands = {};
   const Eigen::Matrix3d R = motion.X_WB.linear();
   const double speed = R.col(0).dot(motion.v_W), turn = R.col(2).dot(motion.omega_W);
-  const double turn_wanted = intent.speed_mps * curvature + intent.wobble_rad_s;
+  const double turn_wanted = intent.turn_rad_s(curvature);
   const double mass = moved_mass_kg(vehicle), inertia = turn_inertia_kg_m2(vehicle);
   const double hurry = (intent.speed_mps - hands.speed_mps) / step_s,
                swing = (intent.wobble_rad_s - hands.wobble_rad_s) / step_s;

@@ -12,12 +12,15 @@ namespace adit {
 /// What a person who pushes wants at an instant.
 struct Intent {
   double speed_mps = 0;
-  double wobble_rad_s = 0;  // turn rate beside what the route asks
-  bool hold = true;         // stands and holds the vehicle
+  double wobble_rad_s = 0;   // turn rate beside what the route asks
+  bool hold = true;          // stands and holds the vehicle
+  bool on_the_spot = false;  // turns about its axle: what the route asks does not count
+
+  double turn_rad_s(double curvature) const { return (on_the_spot ? 0 : speed_mps * curvature) + wobble_rad_s; }
 };
 
-/// When and how fast a person walks: a speed that varies slowly, its ripple with each step, swaying, stops. All of it
-/// is a function of the seed, of time and of where on the route the vehicle is.
+/// When and how fast a person walks: a speed that varies slowly, its ripple with each step, swaying, stops; where the way on
+/// lies behind, stopping and swinging the vehicle round about its axle. All of it is a function of the seed, of time and of where on the route the vehicle is.
 class Pusher {
  public:
   Pusher(const DriveSettings& settings, std::uint64_t seed, double length_m);
@@ -38,7 +41,8 @@ class Pusher {
   double halt_at_m_ = 0;  // the next stop, or the end
   std::uint64_t stops_ = 0;
   bool arrived_ = false;
-  double speed_mps_ = 0;
+  SpotTurn turn_;
+  double speed_mps_ = 0, swing_rad_s_ = 0;
   double gait_rad_ = 0, sway_rad_ = 0;
 };
 

@@ -102,15 +102,26 @@ double share_at(const Piece& s, double along_m) {
 
 double track_on(const std::vector<Piece>& near, const Vec2& p, std::uint64_t seed) {
   double highest = 0;
-  for (const Piece& s : near) {
-    const Vec2 d = s.b - s.a;
-    const double length = d.norm();
-    if (length == 0) continue;
-    const double t = d.dot(p - s.a) / length;
-    if (t < 0 || t > length) continue;
-    const double along = s.at_m + t, left = (d.x() * (p - s.a).y() - d.y() * (p - s.a).x()) / length;
-    const double share = share_at(s, along);
-    if (share > 0) highest = std::max(highest, share * track_height_m(along, left, seed, s.passage));
+  for (size_t k = 0; k < near.size();) {
+    // By the nearest of a passage's pieces: on the outer side of a bend a point lies beside none of them.
+    const size_t passage = near[k].passage;
+    double least = half_width_m, share = 0, along = 0, left = 0;
+    for (; k < near.size() && near[k].passage == passage; ++k) {
+      const Piece& s = near[k];
+      const Vec2 d = s.b - s.a, from_a = p - s.a;
+      const double length = d.norm();
+      if (length == 0) continue;
+      const double t = std::clamp(d.dot(from_a) / length, 0.0, length);
+      const double side = (d.x() * from_a.y() - d.y() * from_a.x()) / length;
+      const bool beside = t > 0 && t < length;
+      const double distance = beside ? std::abs(side) : (from_a - t / length * d).norm();
+      if (distance >= least) continue;
+      least = distance;
+      along = s.at_m + t;
+      left = std::copysign(distance, side);
+      share = share_at(s, along);
+    }
+    if (share > 0) highest = std::max(highest, share * track_height_m(along, left, seed, passage));
   }
   return highest;
 }

@@ -35,6 +35,8 @@ struct DriveSettings {
   int sample_hz = 120;                           // of the path; divides step_hz
 };
 Fields fields(DriveSettings& settings);
+/// @throws Error  where settings exclude one another
+void check(const DriveSettings& settings);
 
 /// Drives a vehicle along a route, or by recorded commands from the route's first point.
 /// @param world    mesh closed, floor labelled; what is not floor or roof is rock to bump into as well

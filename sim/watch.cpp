@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/watch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -9,6 +10,7 @@ namespace adit {
 namespace {
 
 constexpr double patience_s = 5;  // without moving on in it, a vehicle is held up
+constexpr double leaning_s = 20;  // nor does a person take longer to push with all force
 constexpr double turning_s = 30;  // nor does it take longer to turn on the spot
 constexpr double headway_m = 0.1;
 constexpr double turned_rad = 0.35;  // counts as having moved
@@ -55,25 +57,31 @@ std::optional<Trouble> Watch::look(const Headway& headway, const Motion& motion,
   if (headway.by_route && std::abs(headway.guide.cross_m) > stray_m)
     return Trouble{DriveEnd::stuck,
                    name + say(" strayed %.1f m off its route ", std::abs(headway.guide.cross_m)) + here()};
-  if (headway.t_s - moved_s_ > patience_s || headway.t_s - ahead_s_ > turning_s)
+  // Who creeps up to a halt leans on the handle little by little: held up is who can do no more.
+  const double stood_s = headway.t_s - moved_s_;
+  const bool leans = vehicle_.drivetrain == Drivetrain::pushed && std::abs(effort.force_N) < vehicle_.force_max_N &&
+                     stood_s < leaning_s;
+  if ((stood_s > patience_s && !leans) || headway.t_s - ahead_s_ > turning_s)
     return held_up(headway, motion, effort, physics);
   return std::nullopt;
 }
 
 Trouble Watch::held_up(const Headway& headway, const Motion& motion, const Effort& effort,
                        const Physics& physics) const {
+  const double stood_s = headway.t_s - std::min(moved_s_, ahead_s_);
   const std::string tried = vehicle_.drivetrain == Drivetrain::pushed
-                                ? say(": pushed for %.0f s, at last with %.0f N, ", patience_s, effort.force_N)
-                                : say(": its motors strove for %.0f s, at last for %.2f and %.2f m/s, ", patience_s,
+                                ? say(": pushed for %.0f s, at last with %.0f N, ", stood_s, effort.force_N)
+                                : say(": its motors strove for %.0f s, at last for %.2f and %.2f m/s, ", stood_s,
                                       effort.left_mps, effort.right_mps);
   const std::optional<size_t> at_frame = physics.touched_face(), at_wheel = physics.face_at_wheel();
   const std::string where = place(headway, motion) + tried;
   if (at_frame)
-    return {DriveEnd::blocked,
-            vehicle_.name + " is blocked " + where + "its frame against the " + face_name(*at_frame)};
+    return {DriveEnd::blocked, vehicle_.name + " is blocked " + where + "its frame against the " + face_name(*at_frame),
+            true};
   if (at_wheel)
-    return {DriveEnd::blocked, vehicle_.name + " is blocked " + where + "a wheel against the " + face_name(*at_wheel)};
-  return {DriveEnd::stuck, vehicle_.name + " got stuck " + where + "its wheels do not get on"};
+    return {DriveEnd::blocked, vehicle_.name + " is blocked " + where + "a wheel against the " + face_name(*at_wheel),
+            true};
+  return {DriveEnd::stuck, vehicle_.name + " got stuck " + where + "its wheels do not get on", true};
 }
 
 bool Watch::over_floor(const Motion& motion) const {

@@ -18,7 +18,8 @@ std::string say(const char* format, ...);
 /// Why a drive ended early.
 struct Trouble {
   DriveEnd end;
-  std::string cause;  // one sentence, with place and time
+  std::string cause;     // one sentence, with place and time
+  bool held_up = false;  // it does not get on: another try may help
 };
 
 /// How far a drive has come, at an instant.

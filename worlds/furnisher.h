@@ -14,13 +14,16 @@ class Way {
   Way(const Drift& drift, double clear_a_m, double clear_b_m);
   double length_m() const { return at_.back(); }
   Spot at(double s) const;
+  /// Where vehicles turn round: near its dead ends.
+  bool turns(double s) const { return s < turn_a_m || s > length_m() - turn_b_m; }
 
  private:
   const std::vector<Vec2>& line_;
   std::vector<double> at_;
 
  public:
-  double from_m, to_m;  // where things may stand
+  double from_m, to_m;                // where things may stand
+  double turn_a_m = 0, turn_b_m = 0;  // of its ends, where vehicles turn round
 };
 
 double yaw_of(const Vec2& v);
@@ -39,6 +42,7 @@ class Furnisher {
   bool has(What what, double share) const { return lot(what, 0) < share; }
   int count(What what, double per_100m, const Way& way) const;
   double lane() const { return 0.5 * s_.lane_m; }
+  double lane(const Way& way, double s) const;
   Way way_of(size_t passage) const;
 
   /// What is asked for and not put counts as left out.
@@ -64,7 +68,7 @@ class Furnisher {
   bool put_block(const Vec2& p, double size, What what, std::uint64_t k);
   void add_blocks(const Way& way);
   void add_stones();
-  double to_lane(const Vec2& p) const;
+  double off_lanes(const Vec2& p) const;
   void add_beam(const Spot& spot);
   void add_pools(const Way& way);
   void add_pool(const Vec2& lowest, double depth);

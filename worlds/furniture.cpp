@@ -11,6 +11,8 @@ namespace adit {
 namespace {
 
 constexpr double junction_m = 1.5;  // kept clear about a junction beyond half its width
+// Of a dead end, where routes turn round (route_line.cpp), and the lane there: an arc of 1.75 m and 0.75 m beside it.
+constexpr double turn_m = 8, turn_lane_m = 5;
 
 // Things that were there when the roof came down.
 bool stood_before(Label label) {
@@ -90,7 +92,15 @@ int Furnisher::count(What what, double per_100m, const Way& way) const {
 Way Furnisher::way_of(size_t p) const {
   const PlanPassage& passage = plan_.plan.passages[p];
   const auto clear = [&](int node) { return degree_[node] > 1 ? 0.5 * widest_[node] + junction_m : 0.3; };
-  return {plan_.drifts[p], clear(passage.a), clear(passage.b)};
+  Way way{plan_.drifts[p], clear(passage.a), clear(passage.b)};
+  way.turn_a_m = degree_[passage.a] > 1 ? 0 : turn_m;
+  way.turn_b_m = degree_[passage.b] > 1 ? 0 : turn_m;
+  return way;
+}
+
+// From the centre line to what may stand beside it.
+double Furnisher::lane(const Way& way, double s) const {
+  return way.turns(s) ? std::max(lane(), 0.5 * turn_lane_m) : lane();
 }
 
 bool Furnisher::put(Label label, Bodies bodies, double yaw, bool blocks) {

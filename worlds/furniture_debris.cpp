@@ -40,9 +40,10 @@ void Furnisher::add_blocks(const Way& way) {
   ask(Label::block, n);
   for (int i = 0; i < n; ++i) {
     const std::uint64_t k = 1 + 32 * static_cast<std::uint64_t>(i);
-    const Spot spot = way.at(lot(blocks, k, way.from_m, way.to_m));
+    const double s = lot(blocks, k, way.from_m, way.to_m);
+    const Spot spot = way.at(s);
     const double sign = lot(blocks, k + 1) < 0.5 ? -1 : 1, size = block_size(blocks, k + 2);
-    const double room = free_m(space_, spot, sign, {0.05, 0.2}) - 0.5 * size - 0.05, least = lane() + 0.5 * size;
+    const double room = free_m(space_, spot, sign, {0.05, 0.2}) - 0.5 * size - 0.05, least = lane(way, s) + 0.5 * size;
     if (!(room > least) || room > 10) continue;
     put_block(spot.beside(sign * (least + lot(blocks, k + 4) * (room - least))), size, blocks, k + 6);
   }
@@ -61,18 +62,23 @@ void Furnisher::add_stones() {
       const Vec2 across(-fall.along.y(), fall.along.x());
       const double wide = heap ? 1.6 * fall.half_across_m : fall.half_across_m + 0.5;
       const Vec2 p = fall.middle + u * fall.half_along_m * fall.along + v * wide * across;
-      if (heap || to_lane(p) > lane() + 0.5 * size) ask(Label::block), put_block(p, size, stones, k + 6);
+      if (heap || off_lanes(p) > 0.5 * size) ask(Label::block), put_block(p, size, stones, k + 6);
     }
   }
 }
 
-// Distance from the nearest centre line that is not blocked.
-double Furnisher::to_lane(const Vec2& p) const {
+// From the lanes of passages that are not blocked.
+double Furnisher::off_lanes(const Vec2& p) const {
   double least = 1e9;
   for (size_t i = 0; i < plan_.drifts.size(); ++i) {
     if (plan_.decay.blocked[i]) continue;
+    const Way way = way_of(i);
     const auto& line = plan_.drifts[i].line;
-    for (const Vec2& q : line) least = std::min(least, (q - p).norm() - 0.25);
+    double s = 0;
+    for (size_t k = 0; k < line.size(); ++k) {
+      if (k > 0) s += (line[k] - line[k - 1]).norm();
+      least = std::min(least, (line[k] - p).norm() - 0.25 - lane(way, s));
+    }
   }
   return least;
 }

@@ -59,8 +59,9 @@ void Furnisher::add_belt(const Way& way) {
     double off = 1e9;
     for (double ds : {-1.4, -0.7, 0.0, 0.7, 1.4})
       off = std::min(off, free_m(space_, way.at(s + ds), sign, {0.35, 0.45}) - 0.72);
-    if (off - 0.66 < lane() || !std::isfinite(off)) continue;
-    spot.p = spot.beside(sign * std::min(off, lane() + 0.75));
+    const double clear = std::max(lane(way, s - 0.5 * length), lane(way, s + 0.5 * length));
+    if (off - 0.66 < clear || !std::isfinite(off)) continue;
+    spot.p = spot.beside(sign * std::min(off, clear + 0.75));
     put(Label::belt, belt(space_, spot, length), yaw_of(spot.along));
   }
 }

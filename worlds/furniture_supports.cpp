@@ -16,7 +16,7 @@ void Furnisher::add_posts(const Way& way) {
       const Spot spot = way.at(s + lot(posts, j, -0.1, 0.1));
       const double sign = side ? -1 : 1, radius = lot(posts, j + 1, 0.075, 0.1);
       const double off = free_m(space_, spot, sign, {0.1, 0.3, 0.5, 0.7, 0.9}) - lot(posts, j + 2, 0.28, 0.5);
-      if (off - radius < lane() || !std::isfinite(off)) continue;
+      if (off - radius < lane(way, s) || !std::isfinite(off)) continue;
       put(Label::post, post(space_, spot.beside(sign * off), spot.along, radius), yaw_of(spot.along));
     }
   }
@@ -29,7 +29,7 @@ void Furnisher::add_crossbars(const Way& way) {
     const Spot spot = way.at(s + lot(crossbars, k, -0.08, 0.08));
     const std::vector<double> shares{0.08, 0.3, 0.5, 0.7, 0.85, 0.97};
     const double left = free_m(space_, spot, 1, shares) - 0.12, right = -free_m(space_, spot, -1, shares) + 0.12;
-    if (std::min(left, -right) - 0.3 < lane() || !(left - right < 30)) continue;
+    if (std::min(left, -right) - 0.3 < lane(way, s) || !(left - right < 30)) continue;
     put(Label::crossbar, crossbar(space_, spot, right, left), yaw_of(spot.left()));
   }
 }
@@ -39,10 +39,11 @@ void Furnisher::add_cribs(const Way& way) {
   ask(Label::crib, n);
   for (int i = 0; i < n; ++i) {
     const std::uint64_t k = 1 + 8 * static_cast<std::uint64_t>(i);
-    const Spot spot = way.at(lot(cribs, k, way.from_m + 0.5, way.to_m - 0.5));
+    const double s = lot(cribs, k, way.from_m + 0.5, way.to_m - 0.5);
+    const Spot spot = way.at(s);
     const double side = lot(cribs, k + 1, 0.75, 0.9), sign = lot(cribs, k + 2) < 0.5 ? -1 : 1;
     const double off = free_m(space_, spot, sign, {0.3, 0.5, 0.7, 0.9}) - 0.06 - 0.5 * side;
-    if (off - 0.5 * side < lane() || !std::isfinite(off)) continue;
+    if (off - 0.5 * side < lane(way, s) || !std::isfinite(off)) continue;
     const double turn = lot(cribs, k + 3, -0.12, 0.12);
     const Vec2 along = Eigen::Rotation2Dd(turn) * spot.along;
     put(Label::crib, crib(space_, spot.beside(sign * off), along, side), yaw_of(along));

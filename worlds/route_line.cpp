@@ -12,6 +12,7 @@ constexpr double step_m = 0.25;
 constexpr double fine_m = 0.05;
 constexpr double off_face_m = 1.3;        // from a dead end's, a route begins and ends: a vehicle stands there
 constexpr double rib_clearance_m = 0.75;  // of the middle of a turn-about's line
+constexpr double at_junction_m = 1;       // before a junction that is turned round at: about it nothing stands
 // A three-point turn, of arcs of 60 degrees: what a vehicle's corners need across beside the arcs' own width, which is
 // their radius; ahead of the foremost point of the line; and the least radius.
 constexpr double swing_m = 2.6, nose_m = 1.5, tight_m = 0.5;
@@ -140,16 +141,18 @@ Route evenly(const std::vector<Vec2>& points, const std::vector<size_t>& shifts)
 struct Corner {
   double radius, tangent_m, drift_m;
 };
+enum class Turn { none, at_face, at_junction };  // round, at a leg's end
 
-Corner corner_of(const Passage& passage, const Track& track, const Track* next, bool about, const RouteSettings& s) {
-  if (about && s.turn == "three_point") {
+Corner corner_of(const Passage& passage, const Track& track, const Track* next, Turn about, const RouteSettings& s) {
+  if (about != Turn::none && s.turn == "three_point") {
     const double room = std::min(passage.width_m - swing_m, (0.9 * track.length() - nose_m) / 0.87);
     const double radius = std::clamp(room, tight_m, std::max(tight_m, s.turn_radius_m));
     return {radius, std::min(0.87 * radius + nose_m, 0.9 * track.length()), 0};
   }
-  if (about) {
+  if (about != Turn::none) {
     const double radius = std::min(s.turn_radius_m, 0.5 * passage.width_m - rib_clearance_m);
-    return {radius, std::min(2 + radius, 0.3 * track.length()), std::min(3.0, 0.3 * track.length())};
+    const double before = about == Turn::at_face ? 2 + radius : at_junction_m;
+    return {radius, std::min(before, 0.3 * track.length()), std::min(3.0, 0.3 * track.length())};
   }
   return {s.turn_radius_m, next ? tangent_m(track, *next, s.turn_radius_m) : 0, 0};
 }
@@ -170,7 +173,9 @@ Route route_along(const World& world, const std::vector<Leg>& legs, const RouteS
     const Track& track = tracks[i];
     const Track* next = i + 1 < legs.size() ? &tracks[i + 1] : nullptr;
     const bool about = next && legs[i].passage == legs[i + 1].passage && legs[i].forward != legs[i + 1].forward;
-    const auto [radius, tangent, drift] = corner_of(world.passages[legs[i].passage], track, next, about, s);
+    const bool face = world.junctions[static_cast<size_t>(to_of(world, legs[i]))].degree() == 1;
+    const Turn turn = !about ? Turn::none : face ? Turn::at_face : Turn::at_junction;
+    const auto [radius, tangent, drift] = corner_of(world.passages[legs[i].passage], track, next, turn, s);
     const double end = track.length() - (next ? tangent + drift : off_face(to_of(world, legs[i]), track));
     for (double at = begin + fine_m; at < end; at += fine_m) points.push_back(track.at(at));
     points.push_back(track.at(end));

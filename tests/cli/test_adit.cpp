@@ -305,6 +305,22 @@ TEST_F(TinyRun, TheTruthOfAnotherMineIsNotComparable) {
   fs::remove_all(dir);
 }
 
+// Round in a bend until a rib is in the way.
+TEST_F(TinyRun, ADriveThatEndsEarlyIsAnsweredNoWithPlaceAndPictureAndItsRecordingIsKept) {
+  const std::string dir = fresh_folder("early");
+  write_text(dir + "/joystick.csv", "time_s,speed_mps,turn_rate_rad_s\n0.5,0.5,0.25\n60,0,0\n");
+  const Answer said = adit_says("drive " + tiny + " --threads 1 --set drive.commands=" + dir +
+                                "/joystick.csv --world " + out_ + "/world -o " + dir);
+  EXPECT_EQ(said.exit_code, 1) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("the drive ended early (blocked): cart is blocked at ("));
+  EXPECT_THAT(said.err, HasSubstr("against the rib"));
+  EXPECT_GT(fs::file_size(dir + "/recording/trouble.png"), 10000u);  // a picture with a mine in it
+  const Answer cloud = adit_says("convert " + dir + "/recording/log.h5 " + dir + "/cloud.ply --every 20 --quiet");
+  EXPECT_EQ(cloud.exit_code, 0) << cloud.err;
+  EXPECT_TRUE(fs::exists(dir + "/recording/truth.h5"));
+  fs::remove_all(dir);
+}
+
 TEST_F(TinyRun, ATruncatedRecordingIsRefusedAndLeavesNothing) {
   const std::string dir = fresh_folder("truncated");
   const std::string log = read_text(out_ + "/recording/log.h5");

@@ -112,6 +112,26 @@ TEST(Physics, RollOnASideSlopeIsTheSlope) {
   EXPECT_NEAR(yaw_pitch_roll(X.linear()).roll_rad, slope + sag, 0.05 * deg);
 }
 
+// Front wheels, or those of one side, on a tie or rail of 0.10 to 0.15 m: 4 to 11 degrees of pitch, 6 to 13 of roll.
+TEST(Physics, ATieOrRailUnderTwoWheelsTipsAVehicleByItsHeightOverWheelbaseOrTrack) {
+  for (const char* name : {"cart", "groundhog"})
+    for (const double height_m : {0.10, 0.15}) {
+      const Vehicle vehicle = load_vehicle(name);
+      const Vec2 half = vehicle.wheels[0].position_B.cwiseAbs();
+      for (const bool ahead : {true, false}) {
+        const World world = terrain_world(
+            {-2, -2}, {2, 2}, 0.1, [=](const Vec2& p) { return (ahead ? p.x() : p.y()) > 0.04 ? height_m : 0.0; });
+        Physics physics(world.mesh, vehicle, stand_on(height_of(Floor(world.mesh)), vehicle, {0, 0}, 0), step_s);
+        const YawPitchRoll a = yaw_pitch_roll(settled(physics).linear());
+        // The hubs' heights differ by the tie's; tyres of the lower wheels, which bear more, give way by 0.2 degrees.
+        EXPECT_NEAR(ahead ? -a.pitch_rad : a.roll_rad, std::asin(height_m / (2 * (ahead ? half.x() : half.y()))),
+                    0.35 * deg)
+            << name << " " << height_m;
+        EXPECT_NEAR(ahead ? a.roll_rad : a.pitch_rad, 0, 0.1 * deg) << name << " " << height_m;
+      }
+    }
+}
+
 TEST(Physics, RollsDownARampWithTheAccelerationOfItsMassAndItsTurningWheels) {
   const double slope = 5 * deg;
   const World world = ramp(slope);

@@ -96,6 +96,25 @@ TEST(Relief, SleepersAndRailsStandAsHighAsOldTrackDoesAndEndBeforeJunctions) {
     EXPECT_NEAR(*relief.height_m({x, 0}), *floor.height_m({x, 0}), 1e-3);
 }
 
+// A passage that bends by 40 degrees: the bed of the track goes round on the outer side too.
+TEST(Relief, TrackHasNoGapAtABend) {
+  World world = terrain_world({-12, -12}, {22, 12}, 1, [](const Vec2&) { return 0.0; });
+  world.junctions = {{Vec3(-10, 0, 0), {0}}, {Vec3(10, 8.4, 0), {0}}};
+  const Vec3 way(std::cos(40 * deg), std::sin(40 * deg), 0);
+  world.passages = {{0, 1, {Vec3(-10, 0, 0), Vec3::Zero(), 12 * way}, 4, 2, 22}};
+  const Floor floor(world.mesh);
+  const Relief relief(world, floor, FloorKind::track, 5);
+  for (const double r : {0.3, 0.53, 0.7}) {  // round the bend, on either rail and between them
+    double before = *relief.height_m(r * Vec2(std::sin(-10 * deg), -std::cos(-10 * deg)));
+    for (double a = -9.5; a <= 50; a += 0.5) {
+      const double here = *relief.height_m(r * Vec2(std::sin(a * deg), -std::cos(a * deg)));
+      // The steepest flank that lies there is a sleeper's, 0.06 m in 0.17 m: slope 0.55; steps are 6 mm long at most.
+      EXPECT_LT(std::abs(here - before), 0.006) << "at " << a << " degrees, " << r << " m off the bend";
+      before = here;
+    }
+  }
+}
+
 // A cross of four passages, each 30 m long.
 World cross_world() {
   World world = terrain_world({-34, -34}, {34, 34}, 2, [](const Vec2&) { return 0.0; });
@@ -159,7 +178,7 @@ TEST(Relief, DrawnGroundHasItsSharesOfThePassagesLength) {
 }
 
 struct Swing {
-  double pitch_deg = 0, roll_deg = 0, heave_m = 0;     // sd about the mean over 8 s
+  double pitch_deg = 0, roll_deg = 0, heave_m = 0;     // sd about the mean over 5.6 m
   double pitch_deg_s = 0, roll_deg_s = 0;              // rms rates over 33 ms
   double pitch_quick_deg_s = 0, roll_quick_deg_s = 0;  // rates that one hundredth of the time exceeds
   double pitch_peak_deg = 0, roll_peak_deg = 0;
@@ -170,8 +189,10 @@ double moving_mean(const std::vector<double>& sum, size_t i, size_t half) {
   return (sum[i + half] - sum[i - half]) / (2 * static_cast<double>(half));
 }
 
-Swing swing_of(const Trajectory& path) {
-  constexpr size_t half = 480, lag = 4;
+Swing swing_of(const Trajectory& path, double speed_mps) {
+  constexpr double window_m = 5.6;  // which the cart walks in 8 s
+  constexpr size_t lag = 4;
+  const auto half = static_cast<size_t>(0.5 * window_m / speed_mps * 120);
   const size_t n = path.size();
   std::vector<double> value[3], sum[3];
   for (auto& s : sum) s.assign(n + 1, 0);
@@ -207,7 +228,8 @@ Swing swing_of(const Trajectory& path) {
   swing.pitch_peak_deg = peak[0];
   swing.roll_peak_deg = peak[1];
   double most = 0;
-  for (double hz = 0.3; hz < 4; hz += 0.02) {
+  for (double per_m = 0.4; per_m < 6; per_m += 0.03) {
+    const double hz = per_m * speed_mps;
     double re = 0, im = 0;
     for (size_t i = 0; i < pitch.size(); ++i) {
       const double phase = 2 * std::numbers::pi * hz * static_cast<double>(i) / 120;
@@ -218,15 +240,15 @@ Swing swing_of(const Trajectory& path) {
   return swing;
 }
 
-Swing swing_on(const std::string& ground) {
+Swing swing_on(const std::string& ground, const std::string& vehicle = "cart", double way_m = 39) {
   DriveSettings settings;
   settings.ground = ground;
   settings.lead_in_s = 0.5;
   settings.stop_gap_min_m = settings.stop_gap_max_m = 1e4;
   settings.speed_sd_mps = 0.02;
-  const Drive d = drive(passage_world(), route_through({{0, 0}, {39, 0}}, 0), load_vehicle("cart"), settings, 3);
+  const Drive d = drive(passage_world(), route_through({{0, 0}, {way_m, 0}}, 0), load_vehicle(vehicle), settings, 3);
   EXPECT_EQ(d.end, DriveEnd::finished) << ground << ": " << d.cause;
-  return swing_of(d.path);
+  return swing_of(d.path, vehicle == "cart" ? settings.speed_mps : settings.robot_speed_mps);
 }
 
 // The ranges that old mine floors are held to: smooth 0.5 to 1 degree sd and 3 to 10 degrees a second; track 2 degrees, 20
@@ -272,6 +294,29 @@ TEST(Relief, RubbleSwingsACartByFourDegrees) {
   }
   EXPECT_GT(s.heave_m, 0.015);
   EXPECT_LT(s.heave_m, 0.08);
+}
+
+// The robot is longer by three fifths, its wheels are twice as large, and it goes at a fifth of the pace: it swings less
+// than the cart on the same floors, where stones are far apart nearly as much, and slowly.
+TEST(Relief, ARobotSwingsLessThanACartAndAtItsOwnPace) {
+  const Swing smooth = swing_on("smooth", "groundhog", 14), track = swing_on("track", "groundhog", 14),
+              rubble = swing_on("rubble", "groundhog", 14);
+  for (const double sd : {smooth.pitch_deg, smooth.roll_deg}) {
+    EXPECT_GT(sd, 0.1);
+    EXPECT_LT(sd, 0.5);  // of the cart 0.5 to 0.7
+  }
+  for (const double sd : {track.pitch_deg, track.roll_deg}) {
+    EXPECT_GT(sd, 0.5);
+    EXPECT_LT(sd, 1.6);  // of the cart 1.6 to 1.8
+  }
+  EXPECT_NEAR(track.strongest_hz, 0.15 / 0.6, 0.03);  // 0.15 m/s over sleepers 0.6 m apart
+  for (const double sd : {rubble.pitch_deg, rubble.roll_deg}) {
+    EXPECT_GT(sd, 2);
+    EXPECT_LT(sd, 4.2);  // of the cart 3.5 to 4.2
+  }
+  for (const Swing& s : {smooth, track, rubble})
+    for (const double quick : {s.pitch_quick_deg_s, s.roll_quick_deg_s}) EXPECT_LT(quick, 12);
+  EXPECT_LT(rubble.heave_m, 0.08);
 }
 
 }  // namespace

@@ -162,10 +162,40 @@ TEST(Furniture, TheLaneOfAnOpenPassageIsClear) {
       ++looked;
       if (!near) continue;
       const Label met = world.mesh.label[static_cast<size_t>(near->face)];
-      EXPECT_FALSE(met >= Label::post && met != Label::crossbar && met != Label::bolt) << label_name(met);
+      // A crossbar and a bolt are overhead; water is driven through.
+      EXPECT_FALSE(met >= Label::post && met != Label::crossbar && met != Label::bolt && met != Label::water)
+          << label_name(met);
     }
   }
   EXPECT_GT(looked, 20u);
+}
+
+// Turning needs 2.5 m to either side of the centre line, within 7 m of the face.
+TEST(Furniture, WhereVehiclesTurnInADeadEndNothingStandsInTheirWay) {
+  WorldSettings s = full();
+  s.panel.width_m = 6.5;  // so wide that things may stand beside the turn
+  s.panel.stub_length_m = 20;
+  const World world = make_world(s, 2);
+  const auto stands = [](Label label) {
+    return label == Label::post || label == Label::crossbar || label == Label::crib || label == Label::belt ||
+           label == Label::block;
+  };
+  size_t within = 0, beyond = 0;  // corners of such things that stand less than 2.5 m off the centre line
+  for (const Passage& p : world.passages)
+    for (const bool at_b : {false, true}) {
+      if (p.blocked || world.junctions[static_cast<size_t>(at_b ? p.b : p.a)].degree() > 1) continue;
+      const Vec2 face = (at_b ? p.centre_line.back() : p.centre_line.front()).head<2>();
+      for (size_t f = 0; f < world.mesh.face.size(); ++f) {
+        if (!stands(world.mesh.label[f])) continue;
+        const Vec3 v = world.mesh.corner(f, 0);
+        for (const Vec3& q : p.centre_line) {
+          if ((q - v).head<2>().norm() > 2.35 || v.z() - q.z() > 1) continue;  // line's points lie up to 1 m apart
+          ((q.head<2>() - face).norm() < 7 ? within : beyond) += 1;
+        }
+      }
+    }
+  EXPECT_EQ(within, 0u);
+  EXPECT_GT(beyond, 20u);
 }
 
 TEST(Furniture, TilesGiveSoundPartsToo) {

@@ -201,6 +201,30 @@ TEST(Router, TurnsInPlaceRunBackOnTheirOwnLine) {
   EXPECT_LT((route.line.back() - route.line.front()).norm(), 1e-6);
 }
 
+// Things stand beside passages from 1.5 m beyond a junction's half width on: a turn ends where they begin.
+TEST(Router, TurnsAtAJunctionAreDrivenWhereNothingStands) {
+  const World& world = mini();
+  const auto crossing =
+      std::find_if(world.junctions.begin(), world.junctions.end(), [](const Junction& j) { return j.degree() > 2; });
+  ASSERT_NE(crossing, world.junctions.end());
+  const int there = static_cast<int>(crossing - world.junctions.begin());
+  const Passage& way = world.passages[static_cast<size_t>(crossing->passages[0])];
+  for (const char* turn : {"arc", "in_place", "three_point"}) {
+    RouteSettings s;
+    s.mode = "waypoints";
+    s.turn = turn;
+    s.waypoints = {way.a == there ? way.b : way.a, there, way.a == there ? way.b : way.a};
+    const Route route = plan_route(world, s, 1);
+    double reach = 0;
+    for (const Vec2& p : route.line) {
+      double off = 1e9;
+      for (const Vec3& q : way.centre_line) off = std::min(off, (q.head<2>() - p).norm());
+      if (off > 0.6) reach = std::max(reach, (p - crossing->p_W.head<2>()).norm());  // off the lane
+    }
+    EXPECT_LT(reach, 0.5 * way.width_m + 1.5) << turn;
+  }
+}
+
 // Arcs of 60 degrees and radius R: sqrt(3)/2 R ahead and R/2 to either side, back where it began.
 TEST(Router, AThreePointTurnIsThreeArcsTheMiddleOneDrivenBackwards) {
   for (const double width : {2.8, 3.7, 6.0}) {
