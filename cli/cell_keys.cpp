@@ -53,6 +53,18 @@ std::string recording_key(const Scenario& s) {
   return digest(resolved_toml(only) + text_behind(s.sensors.rig) + sheets_of(s.sensors) + drive_key(s));
 }
 
+// What judges its maps, and what makes one.
+std::string yardstick_key(const Scenario& s, const std::string& recording) {
+  Scenario only;
+  only.score = s.score;
+  return digest(resolved_toml(only) + recording);
+}
+std::string map_key(const Scenario& s, const std::string& recording) {
+  Scenario only;
+  only.seed = s.seed, only.map = s.map, only.external = s.external;
+  return digest(resolved_toml(only) + recording);
+}
+
 }  // namespace
 
 // FNV-1a, its bits mixed at the end.
@@ -74,7 +86,12 @@ Scenario bare(Scenario s) {
 
 CellKeys keys_of(const Scenario& s) {
   const std::string recording = recording_key(s);
-  return {world_key(s), drive_key(s), recording, digest(resolved_toml(bare(s)) + recording)};
+  return {world_key(s),
+          drive_key(s),
+          recording,
+          yardstick_key(s, recording),
+          map_key(s, recording),
+          digest(resolved_toml(bare(s)) + recording)};
 }
 
 std::string cell_name(const Scenario& scenario) {

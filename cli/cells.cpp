@@ -7,6 +7,7 @@
 #include "cli/cell_keys.h"
 #include "cli/peak_memory.h"
 #include "cli/stages.h"
+#include "eval/yardstick.h"
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -42,6 +43,19 @@ struct Shared {
   bool making = false, made = false;
   std::shared_ptr<const T> value;  // or the reason why there is none
   std::string failure;
+};
+
+// A map as its files tell it, which is what is judged, and as it was made.
+struct Mapped {
+  Estimate judged;
+  std::optional<Estimate> made;  // where the maps are kept
+};
+
+// What judges maps, and what of its arguments must outlive it.
+struct Judge {
+  std::shared_ptr<const World> world;
+  std::shared_ptr<const Recording> recording;
+  Yardstick yardstick;
 };
 
 struct Failure {
@@ -97,6 +111,8 @@ class Kitchen {
       ++worlds_[job.key.world].left;
       ++drives_[job.key.drive].left;
       ++recordings_[job.key.recording].left;
+      ++judges_[job.key.yardstick].left;
+      ++maps_[job.key.map].left;
     }
   }
 
@@ -129,11 +145,22 @@ class Kitchen {
   std::map<std::string, Shared<World>> worlds_;
   std::map<std::string, Shared<Drive>> drives_;
   std::map<std::string, Shared<Recording>> recordings_;
+  std::map<std::string, Shared<Judge>> judges_;
+  std::map<std::string, Shared<Mapped>> maps_;
   std::mutex h5_;  // HDF5 is for one thread
   PeakShares peaks_;
 
+  // work(all of its kind, its key) for each thing that the cell shares with others.
+  template <class Work>
+  void each_shared(const Job& job, const Work& work) {
+    work(worlds_, job.key.world), work(drives_, job.key.drive), work(recordings_, job.key.recording);
+    work(judges_, job.key.yardstick), work(maps_, job.key.map);
+  }
+
   bool ready(const Job& job) {
-    return !worlds_[job.key.world].making && !drives_[job.key.drive].making && !recordings_[job.key.recording].making;
+    bool making = false;
+    each_shared(job, [&](auto& all, const std::string& key) { making = making || all[key].making; });
+    return !making;
   }
 
   // By what the cells before it took.
@@ -154,8 +181,7 @@ class Kitchen {
       }
       Job job = std::move(*at);
       pending_.erase(at);
-      const auto mark = [](auto& shared) { shared.making = !shared.made; };
-      mark(worlds_[job.key.world]), mark(drives_[job.key.drive]), mark(recordings_[job.key.recording]);
+      each_shared(job, [](auto& all, const std::string& key) { all[key].making = !all[key].made; });
       most_ = std::max(most_, ++running_);
       return job;
     }
@@ -163,13 +189,12 @@ class Kitchen {
 
   void leave(const Job& job) {
     const std::lock_guard lock(mutex_);
-    const auto drop = [](auto& all, const std::string& key) {
+    each_shared(job, [](auto& all, const std::string& key) {
       if (--all[key].left == 0)
         all.erase(key);
       else
         all[key].making = false;
-    };
-    drop(worlds_, job.key.world), drop(drives_, job.key.drive), drop(recordings_, job.key.recording);
+    });
     --running_;
     progress_("cells", static_cast<double>(++done_), static_cast<double>(all_));
     changed_.notify_all();
@@ -212,10 +237,30 @@ class Kitchen {
       save_log(at + "/recording/log.h5", recording->log);
       save_truth(at + "/recording/truth.h5", recording->truth);
     }
-    save_estimate(at + "/map", estimate_of(s, recording->log, at));
-    const Score score = score_map(*world, recording->truth, recording->log.rig, load_estimate(at + "/map"), s.score);
-    if (!settings_.keep_map) fs::remove_all(at + "/map");
-    return score;
+    const auto judge = [&] {
+      return had(judges_, job.key.yardstick, [&] {
+        return Judge{world, recording, Yardstick(*world, recording->truth, recording->log.rig, s.score)};
+      });
+    };
+    // First where others wait for it; else it would only lie there while the map is made.
+    if (wanted_by_others(job.key.yardstick)) reason_of(judge);
+    const auto mapped = had(maps_, job.key.map, [&] { return mapped_of(s, recording->log, at); });
+    if (settings_.keep_map) save_estimate(at + "/map", *mapped->made);
+    return score_map(judge()->yardstick, mapped->judged);
+  }
+
+  bool wanted_by_others(const std::string& yardstick) {
+    const std::lock_guard lock(mutex_);
+    return judges_[yardstick].left > 1;
+  }
+
+  Mapped mapped_of(const Scenario& s, const Log& log, const std::string& at) const {
+    Estimate made = estimate_of(s, log, at);
+    save_estimate(at + "/map", made);
+    Mapped mapped{load_estimate(at + "/map"), {}};
+    fs::remove_all(at + "/map");
+    if (settings_.keep_map) mapped.made = std::move(made);
+    return mapped;
   }
 
   static Estimate estimate_of(const Scenario& s, const Log& log, const std::string& at) {
@@ -275,7 +320,10 @@ CellsRun run_cells(const std::vector<Scenario>& scenarios, const CellsSettings& 
     job.scenario.name = "cell";  // the same for all, since they share what bears it
     if (seen.insert(job.key.cell).second) jobs.push_back(std::move(job));
   }
-  const auto order = [](const Job& j) { return std::tie(j.key.world, j.key.drive, j.key.recording, j.key.cell); };
+  // Maps last: they are small beside what judges them.
+  const auto order = [](const Job& j) {
+    return std::tie(j.key.world, j.key.drive, j.key.recording, j.key.yardstick, j.key.map, j.key.cell);
+  };
   std::sort(jobs.begin(), jobs.end(), [&](const Job& a, const Job& b) { return order(a) < order(b); });
   const auto part = [&](int n) { return jobs.size() * static_cast<size_t>(n) / static_cast<size_t>(settings.shards); };
   std::error_code failed;

@@ -60,7 +60,7 @@ Trajectory path_of(const EstimateParts& parts, const Log* log) {
 bool EstimateParts::any() const {
   for (const std::string* part : {&trajectory, &stamps, &covariance, &points, &grid, &surface, &laser})
     if (!part->empty()) return true;
-  return volume_m3 >= 0;
+  return volume_m3 != -1;
 }
 
 EstimateParts parts_in(const std::string& folder) {
@@ -98,6 +98,7 @@ Estimate load_parts(const EstimateParts& parts, const Log* log) {
   if (!parts.points.empty()) e.points = read_cloud(parts.points);
   if (!parts.grid.empty()) e.grid = read_grid(parts.grid);
   if (!parts.surface.empty()) e.surface = read_mesh(parts.surface);
+  if (!std::isfinite(parts.volume_m3)) throw Error("--volume: must be a number of m3");
   if (parts.volume_m3 >= 0) e.volume_m3 = parts.volume_m3;
   return e;
 }

@@ -3,7 +3,10 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "eval/explain.h"
+#include "eval/study.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -77,6 +80,23 @@ std::string list_of(const std::vector<std::string>& items) {
   return "[" + text + "]";
 }
 
+// An objective that no column will have is said before anything runs.
+void check_objectives(const Study& s, const Document& file) {
+  for (const std::string& o : s.objectives) {
+    const bool fast = std::any_of(fast_columns().begin(), fast_columns().end(),
+                                  [&](const StudyColumn& column) { return column.name == o; });
+    if (fast || o == "price" || o == "mass_kg") continue;
+    if (!is_metric(o))
+      file.fail(
+          "objectives",
+          "names '" + o + "', which is no metric of a score ('adit list metrics'), none of fast.*, price, mass_kg");
+    if (!s.full)
+      file.fail(
+          "objectives",
+          "names '" + o + "', which needs runs, and full = false; of geometry alone there are fast.*, price, mass_kg");
+  }
+}
+
 }  // namespace
 
 Fields study_fields(Study& s) {
@@ -128,6 +148,7 @@ Study load_study(const std::string& name_or_file, const std::vector<std::string>
   if (seed >= 0) s.seeds = {seed};
   if (s.seeds.empty()) file.fail("seeds", "is empty: a study needs one seed at least");
   if (s.objectives.empty()) file.fail("objectives", "is empty: a study needs one at least");
+  check_objectives(s, file);
   if (std::set<int>(s.seeds.begin(), s.seeds.end()).size() != s.seeds.size()) file.fail("seeds", "holds a seed twice");
   load_scenario(s.scenario, s.set);
   if (design_size(s) <= s.cells_max) check_levels(s, file);

@@ -115,6 +115,12 @@ std::vector<std::string> defined_metrics() {
   return names;
 }
 
+bool is_metric(const std::string& name) {
+  const std::vector<std::string> names = defined_metrics();
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& d) { return std::regex_match(name, pattern_of(d)); });
+}
+
 std::string explain_metric(const std::string& name) {
   const Page& page = the_page();
   std::string out, block;

@@ -14,4 +14,7 @@ std::string explain_metric(const std::string& name);
 /// Every name that the page defines, with its block: "volume.iou".
 std::vector<std::string> defined_metrics();
 
+/// Whether scores hold a metric of this dotted name ("map.se3.p95_m").
+bool is_metric(const std::string& name);
+
 }  // namespace adit

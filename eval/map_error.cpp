@@ -77,10 +77,10 @@ std::vector<std::uint32_t> neighbours_together(const std::vector<Vec3>& p) {
   return order;
 }
 
-// Near first: most points lie close, and a small radius prunes best.
+// Near first: a small radius prunes best.
 std::optional<Closest> nearest(const Caster& caster, const Vec3& p, const std::optional<Vec3>& seen_along) {
   constexpr double everywhere = 1e6;
-  for (const double radius_m : {0.1, 0.5, 5.0, everywhere})
+  for (const double radius_m : {0.5, 5.0, everywhere})
     if (const auto found = caster.closest(p, radius_m, seen_along)) return found;
   return seen_along ? nearest(caster, p, {}) : std::nullopt;
 }
@@ -207,34 +207,55 @@ MapPoints map_points(const PointCloud& points, const Trajectory& path_M, const R
   return map;
 }
 
-LaidPoints lay(const MapPoints& points, const std::function<const Pose&(size_t)>& X_WM, const Caster& caster,
+LaidPoints lay(const MapPoints& points, const std::function<const Pose&(size_t)>& X_WM, const Surface& surface,
                const Patches& patches, const VolumeDomain* domain) {
   const size_t n = points.size();
   LaidPoints laid{std::vector<float>(n, static_cast<float>(none)), std::vector<std::int32_t>(n, -1),
                   std::vector<std::uint32_t>(n, 0), std::vector<std::uint8_t>(n, 0),
                   std::vector<Vec3>(n, Vec3::Zero())};
-  const Mesh& mesh = caster.mesh();
+  const auto place = [&](size_t i) {
+    std::pair<Vec3, std::optional<Vec3>> p_and_seen{X_WM(i) * points.p_M[i], {}};
+    if (!points.seen_M.empty() && points.seen_M[i].allFinite()) p_and_seen.second = X_WM(i).linear() * points.seen_M[i];
+    return p_and_seen;
+  };
+  const auto put = [&](size_t i, const Vec3& p, const Closest& found) {
+    const double side = (found.point - p).dot(surface.mesh.normal(static_cast<size_t>(found.face)));
+    laid.error_m[i] = static_cast<float>(side < 0 ? -found.distance_m : found.distance_m);
+    laid.face[i] = found.face;
+    laid.foot_W[i] = found.point;
+    laid.patch[i] = patches.at(found.face, found.point);
+    laid.phantom[i] = domain && inside(domain->swept, p);
+  };
   const std::vector<std::uint32_t> order = neighbours_together(points.p_M);
+  std::vector<std::vector<std::uint32_t>> far((n + grain - 1) / grain);  // of the grid's reach
+  parallel_chunks(n, grain, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) {
+      const size_t i = order[k], soon = order[std::min(k + 16, n - 1)];
+      // They lie in the order of the file, far from one another.
+      __builtin_prefetch(&points.p_M[soon]);
+      if (!points.seen_M.empty()) __builtin_prefetch(&points.seen_M[soon]);
+      __builtin_prefetch(&laid.error_m[soon], 1), __builtin_prefetch(&laid.face[soon], 1);
+      __builtin_prefetch(&laid.foot_W[soon], 1), __builtin_prefetch(&laid.patch[soon], 1);
+      const auto [p, seen_along] = place(i);
+      if (!p.allFinite()) continue;
+      if (const auto found = surface.grid.closest(p, seen_along))
+        put(i, p, *found);
+      else
+        far[begin / grain].push_back(static_cast<std::uint32_t>(i));
+    }
+  });
+  std::vector<std::uint32_t> rest;
+  for (const auto& some : far) rest.insert(rest.end(), some.begin(), some.end());
+  if (rest.empty()) return laid;
+  std::optional<Caster> own;
+  const Caster& caster = surface.caster ? *surface.caster : own.emplace(surface.mesh);
   parallel_for(
-      n,
+      rest.size(),
       [&](size_t k) {
-        const size_t i = order[k], soon = order[std::min(k + 16, n - 1)];
-        __builtin_prefetch(&points.p_M[soon]);  // they lie in the order of the file, far from one another
-        if (!points.seen_M.empty()) __builtin_prefetch(&points.seen_M[soon]);
-        const Vec3 p = X_WM(i) * points.p_M[i];
-        if (!p.allFinite()) return;
-        std::optional<Vec3> seen_along;
-        if (!points.seen_M.empty() && points.seen_M[i].allFinite()) seen_along = X_WM(i).linear() * points.seen_M[i];
-        const auto found = nearest(caster, p, seen_along);
-        if (!found) return;
-        const double side = (found->point - p).dot(mesh.normal(static_cast<size_t>(found->face)));
-        laid.error_m[i] = static_cast<float>(side < 0 ? -found->distance_m : found->distance_m);
-        laid.face[i] = found->face;
-        laid.foot_W[i] = found->point;
-        laid.patch[i] = patches.at(found->face, found->point);
-        laid.phantom[i] = domain && inside(domain->swept, p);
+        const auto [p, seen_along] = place(rest[k]);
+        if (const auto found = nearest(caster, p, seen_along)) put(rest[k], p, *found);
       },
-      grain);
+      grain / 8);
   return laid;
 }
 

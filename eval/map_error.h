@@ -9,9 +9,11 @@
 #include "eval/path_error.h"
 #include "eval/volume_error.h"
 #include "rays/caster.h"
+#include "rays/face_grid.h"
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,8 +43,19 @@ struct LaidPoints {
   std::vector<Vec3> foot_W;           // (n) nearest point of the surface
 };
 
+/// A true surface that points are laid on: a grid for those that lie close to it, and for the others a caster, which is made
+/// where it is needed and not there.
+struct Surface {
+  const Mesh& mesh;
+  FaceGrid grid;
+  std::optional<Caster> caster;
+
+  /// The mesh must outlive it.
+  explicit Surface(const Mesh& of) : mesh(of), grid(of) {}
+};
+
 /// @param X_WM  of point i
-LaidPoints lay(const MapPoints& points, const std::function<const Pose&(size_t)>& X_WM, const Caster& caster,
+LaidPoints lay(const MapPoints& points, const std::function<const Pose&(size_t)>& X_WM, const Surface& surface,
                const Patches& patches, const VolumeDomain* domain);
 
 /// bias_m, mae_m, rmse_m, p50_m, p95_m, p99_m, within_2cm / 5 / 10 / 20; precision_, recall_, f_ at thresholds;

@@ -17,7 +17,7 @@
 #include "eval/true_scans.h"
 #include "eval/volume_error.h"
 #include "eval/worst_places.h"
-#include "rays/caster.h"
+#include "eval/yardstick.h"
 
 #include <cmath>
 #include <cstdint>
@@ -37,22 +37,20 @@ std::string text(double value) {
   return buffer;
 }
 
-// What all parts stand on.
-struct Bench {
-  const World& world;
-  const Truth& truth;
-  const Rig& nominal;
-  const Estimate& estimate;
-  const ScoreSettings& settings;
-  const Progress& progress;
-  Caster caster;
-  PassageMap passages;
-  TrueScans scans;
+// How the estimate's path lies on the true one.
+struct Fit {
   int mapping_laser;  // -1: the rig has none
   Pose X_BN;          // the body as the mapping laser's nominal mount has it, in the true body
   PathMatch match;
   std::string no_path;  // why there is no path to judge, or empty
   Alignment first_pose, se3, yaw_xyz;
+};
+
+// What all parts stand on.
+struct Bench : Fit {
+  const Yardstick& yard;
+  const Estimate& estimate;
+  const Progress& progress;
 };
 
 PathMatch matched(const Trajectory& truth, const Trajectory& estimate, const Pose& X_BN, const ScoreSettings& s) {
@@ -79,47 +77,21 @@ Pose nominal_body(const Truth& truth, const Rig& nominal, int laser) {
   return truth.rig.mounts[static_cast<size_t>(laser)].X_BS * nominal.mounts[static_cast<size_t>(laser)].X_BS.inverse();
 }
 
-void check_comparable(const World& world, const Truth& truth, const Rig& nominal) {
-  if (const std::string hash = world_hash(world); truth.world != hash)
-    throw Error("the truth belongs to another world: its hash is " + truth.world + ", the world's is " + hash,
-                Fault::not_comparable);
-  if (nominal.mounts.size() != truth.rig.mounts.size())
-    throw Error("the mapper's rig has " + std::to_string(nominal.mounts.size()) + " lasers, the truth's " +
-                    std::to_string(truth.rig.mounts.size()),
-                Fault::not_comparable);
-}
-
-Bench make_bench(const World& world, const Truth& truth, const Rig& nominal, const Estimate& estimate,
-                 const ScoreSettings& settings, const Progress& progress) {
-  check_comparable(world, truth, nominal);
+// Cheap, so that what cannot be judged is refused before anything long begins.
+Fit fit_of(const Truth& truth, const Rig& nominal, const Estimate& estimate, const ScoreSettings& settings) {
   const int laser = find_view(nominal, View::horizontal);
-  Bench b{world,
-          truth,
-          nominal,
-          estimate,
-          settings,
-          progress,
-          Caster(world.mesh),
-          PassageMap(world),
-          TrueScans(truth, world.mesh),
-          laser,
-          nominal_body(truth, nominal, laser),
-          {},
-          "",
-          {},
-          {},
-          {}};
-  b.match = matched(truth.drive.path, estimate.path, b.X_BN, settings);
+  Fit fit{laser, nominal_body(truth, nominal, laser), {}, "", {}, {}, {}};
+  fit.match = matched(truth.drive.path, estimate.path, fit.X_BN, settings);
   if (estimate.path.empty()) {
-    b.no_path = "the estimate has no path";
-    return b;
+    fit.no_path = "the estimate has no path";
+    return fit;
   }
-  check_share(b.match, truth.drive.path, estimate.path);
-  check_plausible(estimate, b.match);
-  b.first_pose = align_first_pose(b.match);
-  b.se3 = align_se3(b.match);
-  b.yaw_xyz = align_yaw_xyz(b.match);
-  return b;
+  check_share(fit.match, truth.drive.path, estimate.path);
+  check_plausible(estimate, fit.match);
+  fit.first_pose = align_first_pose(fit.match);
+  fit.se3 = align_se3(fit.match);
+  fit.yaw_xyz = align_yaw_xyz(fit.match);
+  return fit;
 }
 
 // The path of scan matching alone, as a path in space.
@@ -133,7 +105,8 @@ Trajectory lifted(const Estimate& estimate) {
 void score_open_loop(const Bench& b, const MetricList& list) {
   const bool have = !b.estimate.path.empty() && b.estimate.open_loop.size() == b.estimate.path.size();
   const std::string why = have ? "" : "the estimate has no path of scan matching alone";
-  const PathMatch match = have ? matched(b.truth.drive.path, lifted(b.estimate), b.X_BN, b.settings) : PathMatch{};
+  const PathMatch match =
+      have ? matched(b.yard.truth.drive.path, lifted(b.estimate), b.X_BN, b.yard.settings) : PathMatch{};
   std::vector<PoseError> first, best;
   if (match.size()) {
     first = pose_errors(match, align_first_pose(match).X_WM);
@@ -141,7 +114,7 @@ void score_open_loop(const Bench& b, const MetricList& list) {
   }
   add_ate(list.under("first_pose"), first, why);
   add_ate(list.under("se3"), best, why);
-  add_rpe(list, match, b.settings.rpe_m, why);
+  add_rpe(list, match, b.yard.settings.rpe_m, why);
   add_length(list, match, why);
 }
 
@@ -160,67 +133,69 @@ void add_path(const MetricList& list, const PathMatch& match, const Alignment& f
 
 void score_path(const Bench& b, Score& score) {
   const MetricList list(score.metrics, "trajectory.");
-  add_path(list, b.match, b.first_pose, b.se3, b.yaw_xyz, b.settings, b.no_path, score);
+  add_path(list, b.match, b.first_pose, b.se3, b.yaw_xyz, b.yard.settings, b.no_path, score);
   score_open_loop(b, list.under("open_loop"));
   add_consistency(MetricList(score.metrics, "consistency."), b.match, b.estimate.covariance, b.no_path);
   const Pose X_BS =
-      b.mapping_laser < 0 ? Pose::Identity() : b.nominal.mounts[static_cast<size_t>(b.mapping_laser)].X_BS;
-  add_bound(MetricList(score.metrics, "bound."), b.scans, b.world.mesh, b.mapping_laser, X_BS, b.match,
+      b.mapping_laser < 0 ? Pose::Identity() : b.yard.nominal.mounts[static_cast<size_t>(b.mapping_laser)].X_BS;
+  add_bound(MetricList(score.metrics, "bound."), b.yard.scans, b.yard.world.mesh, b.mapping_laser, X_BS, b.match,
             b.estimate.open_loop, b.no_path);
   const Vec3 p_BL = b.mapping_laser >= 0
-                        ? Vec3(b.nominal.mounts[static_cast<size_t>(b.mapping_laser)].X_BS.translation())
+                        ? Vec3(b.yard.nominal.mounts[static_cast<size_t>(b.mapping_laser)].X_BS.translation())
                         : Vec3::UnitZ();
-  add_closures(MetricList(score.metrics, "closures."), b.passages, b.caster, b.match, b.estimate.closures, p_BL,
-               b.settings, b.no_path);
+  add_closures(MetricList(score.metrics, "closures."), b.yard.passages, *b.yard.surface.caster, b.match,
+               b.estimate.closures, p_BL, b.yard.settings, b.no_path);
 }
 
-void score_points(const Bench& b, const Patches& patches, const Observable& observable, const VolumeDomain* domain,
-                  Score& score) {
+void score_points(const Bench& b, Score& score) {
+  const Patches& patches = b.yard.patches;
+  const VolumeDomain* domain = b.yard.domain ? &*b.yard.domain : nullptr;
   const std::string why = !b.no_path.empty() ? b.no_path : b.estimate.points.p.empty() ? "the map has no points" : "";
   const MetricList list(score.metrics, "map.");
   const auto add = [&](const std::string& name, const MapPoints& points, const LaidPoints& laid,
                        const std::string& because) {
-    add_map(list.under(name), points, laid, b.world.mesh, patches, observable, b.settings, because);
+    add_map(list.under(name), points, laid, b.yard.world.mesh, patches, b.yard.observable, b.yard.settings, because);
   };
   if (!why.empty()) {
     for (const char* name : {"se3", "first_pose", "local_5m"}) add(name, {}, {}, why);
     return;
   }
-  const MapPoints points = map_points(b.estimate.points, b.estimate.path, b.nominal, b.settings.patch_m);
+  const MapPoints points = map_points(b.estimate.points, b.estimate.path, b.yard.nominal, b.yard.settings.patch_m);
   if (points.seen_M.empty())
     score.notes.push_back(
         "The map's points do not tell which beam saw them: each is held against the nearest surface of either side.");
   b.progress("score: points", 0, 3);
   {
     const LaidPoints laid = lay(
-        points, [&](size_t) -> const Pose& { return b.se3.X_WM; }, b.caster, patches, domain);
+        points, [&](size_t) -> const Pose& { return b.se3.X_WM; }, b.yard.surface, patches, domain);
     add("se3", points, laid, "");
     score.point_error_m = laid.error_m;
     for (const std::int32_t f : laid.face)
-      score.point_label.push_back(f >= 0 && !b.world.mesh.label.empty()
-                                      ? static_cast<std::uint8_t>(b.world.mesh.label[static_cast<size_t>(f)])
+      score.point_label.push_back(f >= 0 && !b.yard.world.mesh.label.empty()
+                                      ? static_cast<std::uint8_t>(b.yard.world.mesh.label[static_cast<size_t>(f)])
                                       : 0);
-    score.passages = passage_scores(laid, b.world.mesh, b.passages);
-    score.worst = worst_places(laid, b.passages);
+    score.passages = passage_scores(laid, b.yard.world.mesh, b.yard.passages);
+    score.worst = worst_places(laid, b.yard.passages);
   }
   b.progress("score: points", 1, 3);
   add("first_pose", points,
       lay(
-          points, [&](size_t) -> const Pose& { return b.first_pose.X_WM; }, b.caster, patches, domain),
+          points, [&](size_t) -> const Pose& { return b.first_pose.X_WM; }, b.yard.surface, patches, domain),
       "");
-  if (b.settings.gravity)
+  if (b.yard.settings.gravity)
     add("yaw_xyz", points,
         lay(
-            points, [&](size_t) -> const Pose& { return b.yaw_xyz.X_WM; }, b.caster, patches, domain),
+            points, [&](size_t) -> const Pose& { return b.yaw_xyz.X_WM; }, b.yard.surface, patches, domain),
         "");
   b.progress("score: points", 2, 3);
   if (points.stamp_s.empty()) {
     add("local_5m", {}, {}, "the map's points have no stamps");
   } else {
-    const Windows windows = windows_of(b.match, b.settings.window_m);
+    const Windows windows = windows_of(b.match, b.yard.settings.window_m);
     add("local_5m", points,
         lay(
-            points, [&](size_t i) -> const Pose& { return windows.at(points.stamp_s[i]); }, b.caster, patches, domain),
+            points, [&](size_t i) -> const Pose& { return windows.at(points.stamp_s[i]); }, b.yard.surface, patches,
+            domain),
         "");
   }
   b.progress("score: points", 3, 3);
@@ -234,21 +209,22 @@ void score_grid(const Bench& b, Score& score) {
   if (why.empty() && b.mapping_laser < 0) why = "the rig has no horizontal laser";
   if (!why.empty()) {
     add_grid(list, {}, {}, why);
-    add_topology(list, b.world, {}, {}, {}, 0, b.settings.pillar_m2, why);
-    add_graph(list, b.world, b.passages, {}, {}, {}, b.settings, why);
+    add_topology(list, b.yard.world, {}, {}, {}, 0, b.yard.settings.pillar_m2, why);
+    add_graph(list, b.yard.world, b.yard.passages, {}, {}, {}, b.yard.settings, why);
     return;
   }
   const auto laser = static_cast<size_t>(b.mapping_laser);
-  const TrueSection section = true_section(grid, b.se3.X_WM, b.scans, laser, b.world.mesh);
+  const TrueSection section = true_section(grid, b.se3.X_WM, b.yard.scans, laser, b.yard.world.mesh);
   add_grid(list, section, grid, "");
   double height_m = 0;
   for (const Pose& X : b.match.X_WB) height_m += X.translation().z() / static_cast<double>(b.match.size());
   const std::vector<Grid::Cell> cells = cells_over(section, grid);
-  score.pillars = add_topology(list, b.world, section, cells, b.se3.X_WM, height_m, b.settings.pillar_m2, "");
-  add_graph(list, b.world, b.passages, section, cells, b.se3.X_WM, b.settings, "");
+  score.pillars = add_topology(list, b.yard.world, section, cells, b.se3.X_WM, height_m, b.yard.settings.pillar_m2, "");
+  add_graph(list, b.yard.world, b.yard.passages, section, cells, b.se3.X_WM, b.yard.settings, "");
 }
 
-void score_volume(const Bench& b, const std::optional<VolumeDomain>& domain, const std::string& why, Score& score) {
+void score_volume(const Bench& b, Score& score) {
+  const std::string& why = b.yard.no_domain;
   std::optional<Mesh> mapped;
   std::string unmapped = b.no_path;
   if (unmapped.empty() && b.estimate.surface.face.empty()) unmapped = "the map has no surface";
@@ -259,9 +235,9 @@ void score_volume(const Bench& b, const std::optional<VolumeDomain>& domain, con
     mapped = b.estimate.surface;
     for (Vec3& v : mapped->vertex) v = b.se3.X_WM * v;
   }
-  const std::vector<PassageVolume> shares =
-      add_volume(MetricList(score.metrics, "volume."), why.empty() ? enclosed_volume(b.world.mesh) : NAN, domain, why,
-                 mapped, unmapped, b.estimate.volume_m3, b.estimate.volume_sigma_m3, b.passages);
+  const std::vector<PassageVolume> shares = add_volume(
+      MetricList(score.metrics, "volume."), why.empty() ? enclosed_volume(b.yard.world.mesh) : NAN, b.yard.domain, why,
+      mapped, unmapped, b.estimate.volume_m3, b.estimate.volume_sigma_m3, b.yard.passages);
   for (PassageScore& p : score.passages) {
     if (shares.empty()) continue;
     p.observable_m3 = shares[static_cast<size_t>(p.passage)].observable_m3;
@@ -289,6 +265,16 @@ void warn_of_frames(Score& score) {
                            text(path->value) + " m: are the points told in the frame of the path?");
 }
 
+// No map claims tens of times the mine; another unit does.
+void warn_of_litres(Score& score) {
+  const Metric *claimed = score.find("volume.claimed_m3"), *mine = score.find("volume.true_m3");
+  if (!claimed || !mine || !(claimed->value > 0) || !(mine->value > 0)) return;
+  const double times = claimed->value / mine->value;
+  if (times > 20)
+    score.warnings.push_back("The volume that is claimed is " + text(times) +
+                             " times the mine's: is it told in m3, not in litres or cubic feet?");
+}
+
 void add_notes(Score& score) {
   const auto silent = [](const std::string& name) {
     for (const char* part : {"by_label", "rpe_", "bound.smooth", "bound.rough", "inside_95", "claim_"})
@@ -314,12 +300,12 @@ std::string path_hash(const Trajectory& path) {
 }
 
 void add_meta(const Bench& b, Score& score) {
-  const ScoreSettings& s = b.settings;
+  const ScoreSettings& s = b.yard.settings;
   const auto add = [&](const std::string& key, const std::string& value) { score.meta.emplace_back(key, value); };
   add("method", b.estimate.method);
-  add("world", b.world.name);
-  add("truth_hash", b.truth.world);
-  add("path_hash", path_hash(b.truth.drive.path));
+  add("world", b.yard.world.name);
+  add("truth_hash", b.yard.truth.world);
+  add("path_hash", path_hash(b.yard.truth.drive.path));
   add("evaluator", std::to_string(evaluator_version));
   add_path_meta(b.match, b.first_pose, b.se3, b.yaw_xyz, s, score);
   const Vec3 shift = b.X_BN.translation();
@@ -333,6 +319,23 @@ void add_meta(const Bench& b, Score& score) {
   add("domain", "columns of " + text(s.domain_cell_m) + " m, fans every " + text(s.domain_beam_deg) +
                     " deg between scans up to " + text(s.domain_step_m) + " m apart, rock within " +
                     text(s.domain_rock_m) + " m of the observable surface");
+}
+
+Score scored(const Bench& b) {
+  Score score;
+  score.X_WM_first_pose = b.first_pose.X_WM;
+  score.X_WM_se3 = b.se3.X_WM;
+  add_meta(b, score);
+  if (!b.se3.warning.empty()) score.warnings.push_back(b.se3.warning);
+  score_path(b, score);
+  score.face_hits = b.yard.observable.face_hits;
+  score_points(b, score);
+  score_grid(b, score);
+  score_volume(b, score);
+  warn_of_frames(score);
+  warn_of_litres(score);
+  add_notes(score);
+  return score;
 }
 
 }  // namespace
@@ -376,31 +379,13 @@ Fields fields(ScoreSettings& s) {
 
 Score score_map(const World& world, const Truth& truth, const Rig& nominal, const Estimate& estimate,
                 const ScoreSettings& settings, const Progress& progress) {
-  const Bench b = make_bench(world, truth, nominal, estimate, settings, progress);
-  Score score;
-  score.X_WM_first_pose = b.first_pose.X_WM;
-  score.X_WM_se3 = b.se3.X_WM;
-  add_meta(b, score);
-  if (!b.se3.warning.empty()) score.warnings.push_back(b.se3.warning);
-  score_path(b, score);
+  check_comparable(world, truth, nominal);
+  const Fit fit = fit_of(truth, nominal, estimate, settings);
+  return scored({fit, Yardstick(world, truth, nominal, settings, progress), estimate, progress});
+}
 
-  const Pose X_WC = truth.drive.path.empty() ? Pose::Identity() : truth.drive.path.X_WB.front();
-  const Patches patches(world.mesh, settings.patch_m, X_WC);
-  const Observable observable =
-      observable_surface(patches, b.scans, world.mesh.face.size(), settings.incidence_deg * deg);
-  score.face_hits = observable.face_hits;
-  std::optional<VolumeDomain> domain;
-  std::string no_domain;
-  if (const size_t open = open_edges(world.mesh); open > 0)
-    no_domain = "the mine's mesh has " + std::to_string(open) + " open edges: it encloses no volume";
-  else
-    domain = volume_domain(world.mesh, patches, observable, b.scans, settings, progress);
-  score_points(b, patches, observable, domain ? &*domain : nullptr, score);
-  score_grid(b, score);
-  score_volume(b, domain, no_domain, score);
-  warn_of_frames(score);
-  add_notes(score);
-  return score;
+Score score_map(const Yardstick& yard, const Estimate& estimate, const Progress& progress) {
+  return scored({fit_of(yard.truth, yard.nominal, estimate, yard.settings), yard, estimate, progress});
 }
 
 Score score_path(const Trajectory& reference, const Estimate& estimate, const ScoreSettings& settings) {

@@ -120,7 +120,11 @@ void judge_points(const StudyTable& t, const std::vector<Source>& sources, const
     for (size_t p = 0; p < n; ++p) answer.point[p].rank += rank[p] / static_cast<double>(sources.size() + 1);
   }
   for (size_t p = 0; p < n; ++p) {
-    if (answer.point[p].failed == answer.point[p].runs) continue;
+    // A study by geometry alone has no runs: its points are judged by what geometry tells of them.
+    const bool judged = cells[p].empty()
+                            ? std::any_of(rows[p].begin(), rows[p].end() - 1, [](double v) { return std::isfinite(v); })
+                            : answer.point[p].failed < cells[p].size();
+    if (!judged) continue;
     if (front[p] && (!answer.best || answer.point[p].rank < answer.point[*answer.best].rank)) answer.best = p;
     if (!answer.worst || answer.point[p].rank > answer.point[*answer.worst].rank) answer.worst = p;
   }

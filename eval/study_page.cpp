@@ -56,11 +56,11 @@ std::string points_table(const StudyPage& p) {
     html += "<tr>" + cell(std::to_string(i + 1));
     for (const std::string& level : t.point[i].level) html += cell(level);
     for (const Spread& s : point.value) html += cell(spread(s), true);
-    html +=
-        cell(point.failed ? std::to_string(point.failed) + " of " + std::to_string(point.runs) : "0", true) +
-        cell(std::string(point.front ? "yes" : "no") + ", " + study_number(100 * point.front_share) + " % of samples",
-             true) +
-        cell(study_number(point.rank), true) + "</tr>\n";
+    html += cell(point.failed ? std::to_string(point.failed) + " of " + std::to_string(point.runs) : "0", true) +
+            cell(std::string(point.front ? "yes" : "no") +
+                     (t.cell.empty() ? "" : ", " + study_number(100 * point.front_share) + " % of samples"),
+                 true) +
+            cell(study_number(point.rank), true) + "</tr>\n";
   }
   return html + end_table;
 }
@@ -154,7 +154,7 @@ std::string counts_of(const StudyPage& p) {
   for (const StudyCell& c : p.table.cell) failed += !c.failure.empty();
   std::string text = std::to_string(p.table.point.size()) + " points, " + std::to_string(p.table.cell.size()) +
                      " runs" + (failed ? ", " + std::to_string(failed) + " failed" : "") + ".";
-  if (p.answer.best)
+  if (p.answer.best && !p.table.cell.empty())
     text += " The best point is on the front in " + study_number(100 * p.answer.point[*p.answer.best].front_share) +
             " % of the samples of the seeds.";
   return text;

@@ -2,6 +2,7 @@
 #include "rays/caster.h"
 
 #include "base/error.h"
+#include "rays/nearest_face.h"
 
 #include <embree3/rtcore.h>
 
@@ -64,27 +65,6 @@ struct Lanes {
     length[k] = p.length;
   }
 };
-
-// Ericson, Real-Time Collision Detection, 5.1.5.
-Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return a;
-  const Vec3 bp = p - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
-  const Vec3 cp = p - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 >= d3 && d5 >= d6) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
-  const double w = 1 / (va + vb + vc);
-  return a + vb * w * ab + vc * w * ac;
-}
 
 }  // namespace
 
@@ -304,49 +284,11 @@ const Vec3& Caster::middle() const {
 
 namespace {
 
-struct Query {
-  const Mesh* mesh;
-  Vec3 p;
-  const Vec3* seen_along;  // or null
-  double best;             // distance
-  Vec3 point;
-  std::int32_t face = -1;
-};
-
-constexpr double tie_m = 1e-10;  // rounding of coordinates a few hundred metres from their origin
-
-// How squarely a face looks at p: where p is nearest to an edge or a corner, the face whose plane it is farthest from tells
-// on which side p lies; another one may have it behind its back.
-double facing(const Mesh& mesh, std::int32_t face, const Vec3& p, const Vec3& at) {
-  return std::abs(mesh.normal(static_cast<size_t>(face)).dot(p - at));
-}
-
-// Ties between faces that share an edge; equal ones go to the lower index, whatever the order of the visit.
-bool beats(const Query& q, unsigned face, const Vec3& at) {
-  const auto f = static_cast<std::int32_t>(face);
-  const double ours = facing(*q.mesh, f, q.p, at), best = facing(*q.mesh, q.face, q.p, q.point);
-  return std::abs(ours - best) > tie_m ? ours > best : f < q.face;
-}
-
 bool look_at(RTCPointQueryFunctionArguments* args) {
-  Query& q = *static_cast<Query*>(args->userPtr);
-  const Mesh& mesh = *q.mesh;
-  const unsigned f = args->primID;
-  const Vec3 a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
-  const Vec3 n = (b - a).cross(c - a);
-  if (q.seen_along && n.dot(*q.seen_along) <= 0) return false;
-  const double reach = q.best + tie_m, far_m2 = (1 + 1e-9) * reach * reach;
-  const double height = n.dot(q.p - a);  // over the face's plane, times |n|
-  if (height * height > far_m2 * n.squaredNorm()) return false;
-  const Vec3 at = closest_on_triangle(q.p, a, b, c);
-  if ((at - q.p).squaredNorm() > far_m2) return false;
-  const double d = (at - q.p).norm();
-  if (!(d <= q.best + tie_m) || (d >= q.best - tie_m && q.face >= 0 && !beats(q, f, at))) return false;
-  q.best = d;
-  q.point = at;
-  q.face = static_cast<std::int32_t>(f);
+  NearestFace& nearest = *static_cast<NearestFace*>(args->userPtr);
+  if (!nearest.offer(args->primID)) return false;
   // Rounded up, with room for the floats of the tree.
-  args->query->radius = std::min(args->query->radius, static_cast<float>(d * (1 + 1e-6) + 1e-4));
+  args->query->radius = std::min(args->query->radius, static_cast<float>(nearest.best_m() * (1 + 1e-6) + 1e-4));
   return true;
 }
 
@@ -354,7 +296,7 @@ bool look_at(RTCPointQueryFunctionArguments* args) {
 
 std::optional<Closest> Caster::closest(const Vec3& p, double radius_m, const std::optional<Vec3>& seen_along) const {
   const Impl& m = *impl_;
-  Query q{m.mesh, p, seen_along ? &*seen_along : nullptr, radius_m, p, -1};
+  NearestFace nearest(*m.mesh, p, radius_m, seen_along);
   RTCPointQuery query;
   const Vec3 o = p - m.middle;
   query.x = static_cast<float>(o.x());
@@ -364,9 +306,8 @@ std::optional<Closest> Caster::closest(const Vec3& p, double radius_m, const std
   query.radius = static_cast<float>(radius_m + 1e-4);
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
-  rtcPointQuery(m.scene, &query, &context, look_at, &q);
-  if (q.face < 0) return std::nullopt;
-  return Closest{q.point, q.face, q.best};
+  rtcPointQuery(m.scene, &query, &context, look_at, &nearest);
+  return nearest.found();
 }
 
 }  // namespace adit

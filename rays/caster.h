@@ -3,6 +3,7 @@
 
 #include "base/frames.h"
 #include "base/mesh.h"
+#include "rays/nearest_face.h"
 
 #include <cstdint>
 #include <memory>
@@ -41,12 +42,6 @@ struct HitColumns {
   std::vector<std::int32_t> face;
 
   void resize(size_t n) { range_m.resize(n), cosine.resize(n), face.resize(n); }
-};
-
-struct Closest {
-  Vec3 point;
-  std::int32_t face;
-  double distance_m;
 };
 
 /// Asks a mesh what a ray meets first and what surface is nearest. Safe to ask from many threads; the same bits on any

@@ -102,9 +102,9 @@ std::vector<Figure> against_cloudcompare(const std::string& name, double far_sha
   const Pose here = Pose::Identity();
   const Patches patches(c.mesh, 0.2, Pose::Identity());  // of recall; distances need none
   const double ours_s = best_seconds(2, [&] {
-    const Caster caster(c.mesh);
+    const Surface surface(c.mesh);
     lay(
-        c.points, [&](size_t) -> const Pose& { return here; }, caster, patches, nullptr);
+        c.points, [&](size_t) -> const Pose& { return here; }, surface, patches, nullptr);
   });
   char what[256];
   std::snprintf(what, sizeof what,

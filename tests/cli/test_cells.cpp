@@ -92,6 +92,19 @@ TEST(Cells, OfOneMineInAnyOrderOnAnyThreadsInAnyShardsAreTheSameBytesAndFailures
   fs::remove_all(one), fs::remove_all(other);
 }
 
+TEST(Cells, ThatDifferOnlyInHowTheyAreScoredMakeTheirMapOnce) {
+  const std::string dir = fresh("shared_map"), calls = fresh("calls");
+  fs::remove(calls);
+  const std::string mapper = "map.external.command=[\"sh\", \"-c\", \"echo called >>" + calls + "; exit 3\"]";
+  const std::vector<Scenario> all{tiny({mapper}), tiny({mapper, "score.patch_m=0.4"}),
+                                  tiny({mapper, "map.method=icra2003"})};
+  const CellsRun run = run_cells(all, {.dir = dir});
+  EXPECT_EQ(run.failed, 3u);
+  EXPECT_EQ(read_text(calls), "called\ncalled\n");  // one for each way of mapping
+  for (const Scenario& s : all) EXPECT_THAT(load_cell(dir, cell_name(s))->failure, HasSubstr("mapper failed"));
+  fs::remove_all(dir), fs::remove(calls);
+}
+
 TEST(Cells, AreScoredToTheByteAsARunIsAndAFolderLeftByAKilledProcessIsSweptAway) {
   const std::string dir = fresh("run"), out = fresh("run_out");
   fs::create_directories(dir);

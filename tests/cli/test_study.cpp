@@ -156,6 +156,8 @@ TEST(Study, ALevelOfSetStandsForManyChanges) {
 TEST(Study, FaultsInItsFileNameLineKeyAndWhatWouldBeRight) {
   EXPECT_THAT(error_of("seedz = [1]\n"), HasSubstr("study_file.toml:1: unknown key 'seedz' (did you mean 'seeds'?)"));
   EXPECT_THAT(error_of("seeds = []\n"), HasSubstr("needs one seed"));
+  EXPECT_THAT(error_of("objectives = [\"map.se3.p95\"]\n"), HasSubstr("names 'map.se3.p95', which is no metric"));
+  EXPECT_THAT(error_of("objectives = [\"map.se3.p95_m\"]\nfull = false\n"), HasSubstr("needs runs, and full = false"));
   EXPECT_THAT(error_of("seeds = [1, 1]\n"), HasSubstr("holds a seed twice"));
   EXPECT_THAT(error_of("[[factor]]\nvalues = [1]\n"), HasSubstr("'key' is missing"));
   EXPECT_THAT(error_of("[[factor]]\nkey = \"drive.speed_mps\"\nvalues = []\n"), HasSubstr("needs a value at least"));

@@ -57,7 +57,7 @@ TEST(CloudCompare, FindsTheSameDistancesToAMicrometreAndTheSameSides) {
   const Patches patches(mesh, 0.2, Pose::Identity());
   const Pose here = Pose::Identity();
   const LaidPoints laid = lay(
-      points, [&](size_t) -> const Pose& { return here; }, caster, patches, nullptr);
+      points, [&](size_t) -> const Pose& { return here; }, Surface(mesh), patches, nullptr);
   std::istringstream out(read_text(folder + "/out.asc"));
   size_t n = 0, theirs_wrong = 0;
   double x, y, z, theirs;

@@ -9,7 +9,12 @@ namespace adit {
 namespace {
 
 TEST(Explain, EveryMetricOfAScoreIsDefined) {
-  for (const Metric& m : score_of(tunnel_case()).metrics) EXPECT_NO_THROW(explain_metric(m.name)) << m.name;
+  for (const Metric& m : score_of(tunnel_case()).metrics) {
+    EXPECT_NO_THROW(explain_metric(m.name)) << m.name;
+    EXPECT_TRUE(is_metric(m.name)) << m.name;
+  }
+  for (const char* none : {"p95_m", "map.p95_m", "map.se3", "map.se3.p95_mm", ""})
+    EXPECT_FALSE(is_metric(none)) << none;
 }
 
 TEST(Explain, TellsDefinitionAlignmentAndWhatItsBlockHolds) {

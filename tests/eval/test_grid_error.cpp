@@ -32,7 +32,8 @@ TEST(GridError, TheTrueSectionScoresOne) {
   EXPECT_EQ(value(score, "grid.pillars_found"), 1);
   EXPECT_EQ(value(score, "grid.loops_true"), 1);
   EXPECT_EQ(value(score, "grid.loops_found"), 1);
-  EXPECT_EQ(value(score, "grid.false_connections"), 0);
+  for (const char* fault : {"false_connections", "pillars_split", "pillars_merged", "pillar_area_error_percent"})
+    EXPECT_EQ(value(score, std::string("grid.") + fault), 0) << fault;
   // The ring's plan area, less the cells of its walls: 80 m of outer and 48 m of inner wall, up to one and a half cells
   // deep.
   EXPECT_NEAR(0.01 * static_cast<double>(score.find("grid.iou_free")->n), 256, 0.15 * 128);
@@ -54,12 +55,16 @@ TEST(GridError, AWayThroughThePillarIsAFalseConnection) {
   const Score score = with_cells({-7, -0.3}, {7, 0.3}, [](float& odds) { odds = -1; });
   EXPECT_EQ(value(score, "grid.false_connections"), 1);
   EXPECT_EQ(value(score, "grid.loops_found"), 2);
+  EXPECT_EQ(value(score, "grid.pillars_split"), 1);
 }
 
 TEST(GridError, ANotchInThePillarIsNone) {
   const Score score = with_cells({-7, -0.3}, {3, 0.3}, [](float& odds) { odds = -1; });
   EXPECT_EQ(value(score, "grid.false_connections"), 0);
   EXPECT_EQ(value(score, "grid.pillars_found"), 1);
+  EXPECT_EQ(value(score, "grid.pillars_split"), 0);
+  // The notch takes some 9 x 0.6 m (from the pillar's side at -6 to 3) of 144 m2 and its walls.
+  EXPECT_NEAR(value(score, "grid.pillar_area_error_percent"), 100 * 5.4 / 144, 0.6);
 }
 
 TEST(GridError, ABlockedPassageLosesTheLoopAndThePillar) {
@@ -67,6 +72,7 @@ TEST(GridError, ABlockedPassageLosesTheLoopAndThePillar) {
   EXPECT_EQ(value(score, "grid.loops_true"), 1);
   EXPECT_EQ(value(score, "grid.loops_found"), 0);
   EXPECT_EQ(value(score, "grid.pillars_found"), 0);
+  EXPECT_EQ(value(score, "grid.pillars_merged"), 1);
 }
 
 TEST(GridError, AllUnknownOrAllFreeScoresBadly) {

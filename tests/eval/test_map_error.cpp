@@ -37,6 +37,7 @@ TEST(MapError, PointsOnTheTrueSurfaceScoreNothingButRight) {
       EXPECT_EQ(value(score, "map." + at + ".precision_" + tau), 1) << at;
       EXPECT_EQ(value(score, "map." + at + ".recall_" + tau), 1)
           << at;  // the same beams made map and observable surface
+      EXPECT_EQ(value(score, "map." + at + ".recall3_" + tau), 1) << at;
       EXPECT_EQ(value(score, "map." + at + ".f_" + tau), 1) << at;
     }
   }
@@ -71,7 +72,7 @@ TEST(MapError, AThinWallDoesNotLendItsFarFace) {
   }
   mesh.vertex.insert(mesh.vertex.end(), right.vertex.begin(), right.vertex.end());
   mesh.label.insert(mesh.label.end(), right.label.begin(), right.label.end());
-  const Caster caster(mesh);
+  const Surface surface(mesh);
   const Patches patches(mesh, 0.2, Pose::Identity());
   MapPoints points;
   points.p_M = {{4.08, 2, 1}, {4.08, 2, 1}};
@@ -82,7 +83,7 @@ TEST(MapError, AThinWallDoesNotLendItsFarFace) {
         static const Pose I = Pose::Identity();
         return I;
       },
-      caster, patches, nullptr);
+      surface, patches, nullptr);
   EXPECT_NEAR(laid.error_m[0], -0.08, 1e-6);  // beyond the left room's wall
   EXPECT_NEAR(laid.error_m[1], -0.02, 1e-6);  // before the right room's wall, in the rock
 }

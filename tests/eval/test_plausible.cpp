@@ -99,6 +99,15 @@ TEST(Plausible, PointsInAnotherFrameThanThePathAreWarnedOf) {
   EXPECT_EQ(score_of(tunnel_case()).warnings.size(), 1u);
 }
 
+TEST(Plausible, AVolumeInLitresIsWarnedOf) {
+  ExactCase c = tunnel_case();
+  c.estimate.points = {};
+  c.estimate.volume_m3 = 160e3;  // of 160 m3
+  EXPECT_THAT(score_of(c).warnings.back(), HasSubstr("1000 times the mine's: is it told in m3"));
+  c.estimate.volume_m3 = 160;
+  EXPECT_EQ(score_of(c).warnings.size(), 1u);  // the path is too straight for positions alone
+}
+
 TEST(Plausible, CovariancesMustBeAsManyAsPoses) {
   EXPECT_THAT(said_of([](ExactCase& c) { c.estimate.covariance.assign(3, Eigen::MatrixXd::Identity(3, 3)); }),
               HasSubstr("3 covariances"));

@@ -64,6 +64,30 @@ TEST(Relations, MeanAndDeviationAreThoseOfTheSample) {
   EXPECT_NEAR(value(score, "translation_sq_sd_m2"), std::sqrt(2 * 0.04 * 0.04), 1e-12);
 }
 
+TEST(Relations, TurnsOfTenAndThirtyDegreesHaveTheMeanAndTheDeviationOfTheTwo) {
+  const Trajectory path{{0, 1, 2}, {planar(0, 0, 0), planar(1, 0, pi / 18), planar(1, 0, pi / 18)}};
+  const std::vector<Relation> relations{{0, 1, planar(1, 0, 0)}, {1, 2, planar(0, 0, pi / 6)}};
+  const Score score = score_relations(relations, path, 0.01);
+  EXPECT_NEAR(value(score, "rotation_deg"), 20, 1e-9);
+  EXPECT_NEAR(value(score, "rotation_sd_deg"), std::sqrt(200.0), 1e-9);
+  EXPECT_NEAR(value(score, "rotation_sq_deg2"), 500, 1e-9);
+  EXPECT_NEAR(value(score, "rotation_sq_sd_deg2"), 800 / std::sqrt(2.0), 1e-9);
+  for (const char* none : {"translation_m", "translation_sd_m", "translation_sq_m2", "translation_sq_sd_m2"})
+    EXPECT_NEAR(value(score, none), 0, 1e-12) << none;
+}
+
+TEST(Relations, OneOfTwentyOneMayLackItsPose) {
+  Trajectory path;
+  std::vector<Relation> relations{{0, 99, planar(1, 0, 0)}};
+  for (int i = 0; i <= 20; ++i) {
+    path.stamp_s.push_back(i), path.X_WB.push_back(planar(i, 0, 0));
+    if (i > 0) relations.push_back({i - 1.0, 1.0 * i, planar(1, 0, 0)});
+  }
+  const Score score = score_relations(relations, path, 0.01);
+  EXPECT_NEAR(value(score, "matched_share"), 20.0 / 21, 1e-12);
+  EXPECT_NEAR(value(score, "translation_sq_m2"), 0, 1e-12);
+}
+
 TEST(Relations, WithoutTheirPosesThereIsNoScore) {
   const Trajectory path{{0, 1}, {planar(0, 0, 0), planar(1, 0, 0)}};
   try {

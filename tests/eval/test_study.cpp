@@ -80,6 +80,20 @@ TEST(Study, APointWhoseRunsFailIsWorseAndAPointWithoutAnyScoreIsNeverTheBest) {
   EXPECT_TRUE(std::isnan(answer.point[0].value[0].median));
 }
 
+TEST(Study, WithoutRunsTheBestIsThatOfTheGeometry) {
+  StudyTable t = planted();
+  t.cell.clear(), t.metric.clear();
+  t.objective = {"fast.value", "price"};
+  for (size_t p = 0; p < 4; ++p) t.point[p].fast[0] = p == 1 ? 2 : 1;  // of one price with point 0
+  t.point[3].fast.assign(fast_columns().size(), none), t.point[3].price = none;
+  const StudyAnswer answer = answer_of(t);
+  // Mean ranks: point 1 by its value 1, by price 2.5; point 2 the other way round, and the first of equals is told;
+  // point 0 2.5 by both. Of point 3 nothing is known.
+  ASSERT_TRUE(answer.best && answer.worst);
+  EXPECT_EQ(*answer.best, 1u);
+  EXPECT_EQ(*answer.worst, 0u);
+}
+
 TEST(Study, SpearmanIsOneForARisingCurveMinusOneForAFallingOneAndSharesTies) {
   EXPECT_NEAR(spearman({1, 2, 3, 4}, {1, 8, 27, 64}), 1, 1e-12);
   EXPECT_NEAR(spearman({1, 2, 3, 4}, {4, 3, 2, 1}), -1, 1e-12);

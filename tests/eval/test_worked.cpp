@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The worked cases of docs/metrics.md that no other test holds: each number is arithmetic, told beside it.
+#include "eval/grid_error.h"
 #include "eval/path_error.h"
 #include "tests/eval/exact_case.h"
 
@@ -77,6 +78,47 @@ TEST(Worked, ARiseOfACentimetreAMetre) {
   EXPECT_EQ(of("rpe_10m_deg_per_m"), 0);
   EXPECT_NEAR(of("length_ratio"), std::sqrt(1.0001), 1e-12);
   EXPECT_NEAR(of("length_ratio_worst_50m"), std::sqrt(1.0001), 1e-12);
+}
+
+TEST(Worked, APathOnePercentTooLong) {
+  const auto of = [](const std::string& name) {
+    return straight([](int i, const Pose& X) { return shifted({0.01 * i, 0, 0}, X); }, name);
+  };
+  EXPECT_NEAR(of("ate_p95_m"), 0.95, 1e-12);
+  EXPECT_NEAR(of("length_error_percent"), 1, 1e-9);
+  EXPECT_NEAR(of("length_ratio_worst_50m"), 1.01, 1e-12);
+  EXPECT_NEAR(of("rpe_10m_percent"), 1, 1e-10);
+  EXPECT_EQ(of("pitch_rmse_deg"), 0);
+  EXPECT_EQ(of("ate_z_rmse_m"), 0);
+}
+
+// A row of twelve cells, walls at 0, 4 and 8; the map has walls where it is told, of certainty, and is free elsewhere.
+std::vector<double> row_of_cells(const std::vector<int>& walls, float certain = 30) {
+  TrueSection section{.cell_m = 1, .width = 12, .height = 1, .cell = std::vector<CellTruth>(12, CellTruth::free)};
+  for (const int i : {0, 4, 8}) section.cell[static_cast<size_t>(i)] = CellTruth::wall;
+  Grid grid;
+  grid.cell_m = 1, grid.width = 12, grid.height = 1;
+  grid.log_odds.assign(12, -certain);
+  for (const int i : walls) grid.log_odds[static_cast<size_t>(i)] = certain;
+  std::vector<Metric> all;
+  add_grid(MetricList(all), section, grid, "");
+  std::vector<double> values;
+  for (const char* name : {"iou_free", "precision_occupied", "recall_occupied", "f_occupied", "brier"})
+    for (const Metric& m : all)
+      if (m.name == name) values.push_back(m.value);
+  return values;
+}
+
+TEST(Worked, WallsOfARowOfCells) {
+  const auto expect = [](const std::vector<double>& found, const std::vector<double>& wanted) {
+    ASSERT_EQ(found.size(), wanted.size());
+    for (size_t k = 0; k < wanted.size(); ++k) EXPECT_NEAR(found[k], wanted[k], 1e-9) << k;
+  };
+  expect(row_of_cells({0, 4, 8}), {1, 1, 1, 1, 0});
+  // 0 and, as a neighbour, 5 are right, 11 is none and 8 is missed; 4 of 12 cells say the wrong thing.
+  expect(row_of_cells({0, 5, 11}), {7.0 / 11, 2.0 / 3, 2.0 / 3, 2.0 / 3, 4.0 / 12});
+  // Eight cells are walls or their neighbours.
+  expect(row_of_cells({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}), {0, 8.0 / 12, 1, 0.8, 9.0 / 12});
 }
 
 TEST(Worked, EveryOtherBodyTurnedByOneTwoAndThreeDegrees) {
@@ -163,6 +205,7 @@ TEST(Worked, AClaimIsHeldAgainstWhatCouldBeSeenByItsOwnSigma) {
     const Score s = score_of(c);
     EXPECT_NEAR(value(s, "volume.claim_sigmas"), off_m3 / 2, 1e-9);
     EXPECT_EQ(value(s, "volume.claim_holds_95"), holds) << off_m3;
+    EXPECT_EQ(value(s, "volume.claimed_m3"), seen + off_m3);
     EXPECT_NEAR(value(s, "volume.sigma_percent"), 200 / (seen + off_m3), 1e-9);
   }
 }

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
 #include "base/rng.h"
 #include "rays/caster.h"
+#include "rays/face_grid.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 namespace adit {
@@ -145,6 +149,57 @@ TEST(Caster, AThinWallDoesNotLendItsFarFace) {
   const Vec3 p(5.06, 2, 1);
   EXPECT_NEAR(caster.closest(p, 1)->distance_m, 0.04, 1e-9);
   EXPECT_NEAR(caster.closest(p, 1, Vec3::UnitX())->distance_m, 0.06, 1e-9);
+}
+
+// Faces of all sizes, leaning every way, one of them without area.
+Mesh lump() {
+  Mesh mesh = sphere_mesh({40, -30, 5}, 2, 3);
+  for (size_t i = 0; i < mesh.vertex.size(); ++i)
+    for (int k = 0; k < 3; ++k) mesh.vertex[i][k] += 0.1 * normal(3, Draw::test, i, static_cast<std::uint64_t>(k));
+  const Mesh room = box_mesh({36, -34, 1}, {44, -26, 9});
+  const auto first = static_cast<std::uint32_t>(mesh.vertex.size());
+  for (auto f : room.face) mesh.face.push_back({f[0] + first, f[1] + first, f[2] + first});
+  mesh.vertex.insert(mesh.vertex.end(), room.vertex.begin(), room.vertex.end());
+  mesh.face.push_back({0, 1, 1});
+  return mesh;
+}
+
+TEST(FaceGrid, FindsCloseToTheSurfaceTheFaceThatTheTreeFinds) {
+  const Mesh mesh = lump();
+  const Caster caster(mesh);
+  const FaceGrid grid(mesh);
+  size_t close = 0;
+  for (std::uint64_t i = 0; i < 5000; ++i) {
+    Vec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = 9 * uniform(4, Draw::test, i, static_cast<std::uint64_t>(k)) - 4.5;
+    p += Vec3(40, -30, 5);
+    std::optional<Vec3> seen_along;
+    if (i % 2) seen_along = any_direction(static_cast<int>(i));
+    const auto ours = grid.closest(p, seen_along), tree = caster.closest(p, grid.reach_m(), seen_along);
+    ASSERT_EQ(ours.has_value(), tree.has_value()) << i;
+    if (!ours) continue;
+    ++close;
+    EXPECT_EQ(ours->face, tree->face) << i;
+    EXPECT_EQ(ours->distance_m, tree->distance_m) << i;
+    EXPECT_EQ(ours->point, tree->point) << i;
+  }
+  EXPECT_GT(close, 1000u);
+}
+
+TEST(FaceGrid, HasNothingFarFromTheMeshNorWhereNoNumberIs) {
+  const Mesh box = box_mesh({0, 0, 0}, {1, 1, 1});
+  const FaceGrid grid(box);
+  for (const double x : {-1e3, 1e3, 1e12, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_FALSE(grid.closest({x, 0.5, 0.5})) << x;
+  EXPECT_THROW(FaceGrid(Mesh{}), Error);
+}
+
+TEST(FaceGrid, ACornerASideAndTheInsideOfAFaceAreAsFarAsTheyAre) {
+  const Mesh box = fine_box_mesh({0, 0, 0}, {6, 5, 2}, 0.5);
+  const FaceGrid grid(box);
+  EXPECT_NEAR(grid.closest({-0.1, -0.1, -0.1})->distance_m, std::sqrt(0.03), 1e-12);
+  EXPECT_NEAR(grid.closest({3.01, -0.1, -0.2})->distance_m, std::sqrt(0.05), 1e-12);
+  EXPECT_NEAR(grid.closest({3.01, 2.02, 1.75})->distance_m, 0.25, 1e-12);
 }
 
 }  // namespace
