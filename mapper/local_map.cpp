@@ -14,7 +14,7 @@ namespace {
 constexpr double index_m = 0.25;         // cell of the index
 constexpr double like = 0.5;             // cosine between normals of one rib
 constexpr double surfel_sigma_m = 0.02;  // of a surfel about the surface that it makes with its neighbours
-constexpr double rib_slope = 0.3;        // of that surface, away from upright, 1 sd
+constexpr double rib_slope = 0.6;        // of that surface, away from upright, 1 sd
 constexpr double upright = surfel_sigma_m * surfel_sigma_m / (rib_slope * rib_slope);
 
 struct Bounds {

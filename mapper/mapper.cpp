@@ -38,9 +38,9 @@ struct PlanarMap {
   std::vector<Pose2> X_MB;
 };
 
-PlanarMap map_plan(const Log& log, int horizontal, Odometry odometry, const std::vector<Stance>& stances,
-                   const MapSettings& settings, const Progress& progress) {
-  const OdometrySettings found = at_ribs(settings.odometry, odometry);
+PlanarMap map_plan(const Log& log, int horizontal, Odometry odometry, const OdometrySettings& matched,
+                   const std::vector<Stance>& stances, const MapSettings& settings, const Progress& progress) {
+  const OdometrySettings found = at_ribs(matched, odometry);
   const std::vector<ScanPoints> points =
       scan_points(log.scans[horizontal], log.rig.mounts[horizontal], odometry.X_MB, found.points, stances);
   Aligned aligned = align(odometry, points, found.match, settings, progress);
@@ -70,17 +70,13 @@ std::vector<Stance> stances_of(const Log& log, int horizontal, const Odometry& o
 /// tells height, pitch and roll all is matched once more, each beam where it was in space.
 PlanarMap map_plan(const Log& log, int horizontal, Odometry odometry, const MapSettings& settings,
                    const Progress& progress) {
-  std::vector<Stance> stances;
-  if (settings.in_space && settings.method == "robust" && find_view(log.rig, View::forward_vertical) >= 0) {
-    stances = stances_of(log, horizontal, odometry, settings, progress);
-    Odometry again =
-        estimate_motion(log.scans[horizontal], log.rig.mounts[horizontal], settings.odometry, progress, stances);
-    if (again.breaks.empty())
-      odometry = std::move(again);
-    else
-      stances.clear();
+  if (settings.space.use && settings.method == "robust" && find_view(log.rig, View::forward_vertical) >= 0) {
+    const std::vector<Stance> stances = stances_of(log, horizontal, odometry, settings, progress);
+    const OdometrySettings matched = in_space(settings.odometry, settings.space);
+    Odometry again = estimate_motion(log.scans[horizontal], log.rig.mounts[horizontal], matched, progress, stances);
+    if (again.breaks.empty()) return map_plan(log, horizontal, std::move(again), matched, stances, settings, progress);
   }
-  return map_plan(log, horizontal, std::move(odometry), stances, settings, progress);
+  return map_plan(log, horizontal, std::move(odometry), settings.odometry, {}, settings, progress);
 }
 
 /// What the path in the plane tells.
@@ -208,9 +204,9 @@ Estimate map_longest_piece(const Log& log, const std::vector<double>& stamp_s, c
 }  // namespace
 
 Fields fields(MapSettings& s) {
-  Fields all{{"method", &s.method, "of the global alignment", {"robust", "icra2003"}},
-             {"in_space", &s.in_space, "match a second time, in space, where the rig sees height, pitch and roll"}};
+  Fields all{{"method", &s.method, "of the global alignment", {"robust", "icra2003"}}};
   append(all, "odometry", fields(s.odometry));
+  append(all, "space", fields(s.space));
   append(all, "icra2003", fields(s.icra2003));
   append(all, "robust", fields(s.robust));
   append(all, "places", fields(s.places));

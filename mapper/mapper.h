@@ -21,8 +21,8 @@ namespace adit {
 /// How a map is made. Keys stand below [map], those of the parts below [map.odometry], [map.robust] and so on.
 struct MapSettings {
   std::string method = "robust";  // of the global alignment
-  bool in_space = true;           // robust: match a second time, with the height, pitch and roll that the first path leads to
   OdometrySettings odometry;
+  SpaceSettings space;  // robust: a second time, with the height, pitch and roll that the first path leads to
   PublishedSettings icra2003;
   RobustSettings robust;
   PlaceSettings places;

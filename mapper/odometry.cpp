@@ -287,7 +287,7 @@ Odometry track(const Scans& scans, const Mount& horizontal, const OdometrySettin
   const auto middle = rib_sigma_m.begin() + static_cast<std::ptrdiff_t>(rib_sigma_m.size() / 2);
   std::nth_element(rib_sigma_m.begin(), middle, rib_sigma_m.end());
   out.rib_sigma_m = *middle;
-  out.steadiness = learns ? 1 : stances.empty() ? settings.steadiness : settings.steadiness_in_space;
+  out.steadiness = learns ? 1 : settings.steadiness;
   out.degenerate = stretches_of(scans.stamp_s, weak, settings);
   weaken(scans.stamp_s, weak, out.degenerate, out.information);
   return out;
@@ -313,10 +313,24 @@ Fields fields(OdometrySettings& s) {
       {"uneven_range_m", &s.uneven_range_m, "range_max_m where ribs are uneven, if that is less", 1, 1000},
       {"steadiness", &s.steadiness, "how many times less than its scans' errors the map of even ribs drifts, variances",
        1, 1000},
-      {"steadiness_in_space", &s.steadiness_in_space, "the same where scans are matched in space", 1, 1000},
       {"information_scale", &s.information_scale, "of a step against that of its match, by trial", 1e-6, 1e6}};
   all.insert(all.end(), own.begin(), own.end());
   return all;
+}
+
+Fields fields(SpaceSettings& s) {
+  return {{"use", &s.use, "match a second time, in space, where the rig sees height, pitch and roll"},
+          {"range_max_m", &s.range_max_m, "then longer ranges are not taken for ribs", 1, 1000},
+          {"key_step_m", &s.key_step_m, "then: way between key scans", 0.01, 10},
+          {"key_scans", &s.key_scans, "then: past key scans that make the map", 1, 1000},
+          {"steadiness", &s.steadiness, "then: odometry.steadiness", 1, 1000}};
+}
+
+OdometrySettings in_space(const OdometrySettings& settings, const SpaceSettings& space) {
+  OdometrySettings out = settings;
+  out.points.range_max_m = std::max(settings.points.range_max_m, space.range_max_m);
+  out.key_step_m = space.key_step_m, out.key_scans = space.key_scans, out.steadiness = space.steadiness;
+  return out;
 }
 
 OdometrySettings at_ribs(const OdometrySettings& settings, const Odometry& odometry) {

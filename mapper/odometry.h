@@ -39,18 +39,31 @@ struct OdometrySettings {
   double key_step_deg = 10;
   double speed_change_m_s2 = 0.5;  // 1 sd of the change of speed, for the prediction
   double turn_change_deg_s2 = 40;
-  double speed_spread_m_s = 0.2;    // of the speed about its mean, 1 sd: what degenerate stretches may be wrong by
-  double new_share = 0.1;           // of a scan's points not on the map, for it to be a new key scan
-  double information_scale = 1;     // of a step against that of its match
-  double uneven_from = 1.5;         // times match.map_sigma_m: ribs beyond that are uneven
-  double uneven_range_m = 20;       // points.range_max_m there, if that is less: what is far holds the heading
-  double steadiness = 8;            // see Odometry; where ribs are even
-  double steadiness_in_space = 20;  // the same where stances are known
-  double search_m = 0.6;            // half width of the search when the refiner fails
+  double speed_spread_m_s = 0.2;  // of the speed about its mean, 1 sd: what degenerate stretches may be wrong by
+  double new_share = 0.1;         // of a scan's points not on the map, for it to be a new key scan
+  double information_scale = 1;   // of a step against that of its match
+  double uneven_from = 1.5;       // times match.map_sigma_m: ribs beyond that are uneven
+  double uneven_range_m = 20;     // points.range_max_m there, if that is less: what is far holds the heading
+  double steadiness = 8;          // see Odometry; where ribs are even
+  double search_m = 0.6;          // half width of the search when the refiner fails
   double search_deg = 25;
   double most_speed_m_s = 3;  // a faster match is a wrong one
 };
 Fields fields(OdometrySettings& s);
+
+/// What is other where scans are matched in space: a beam that met floor or roof lies at another height than the ribs, and
+/// spoils less; what a scan adds to the map is at a height of its own.
+struct SpaceSettings {
+  bool use = true;
+  double range_max_m = 20;  // in place of points.range_max_m, if that is less
+  double key_step_m = 0.15;
+  int key_scans = 50;
+  double steadiness = 12;
+};
+Fields fields(SpaceSettings& s);
+
+/// How a log is matched in space.
+OdometrySettings in_space(const OdometrySettings& settings, const SpaceSettings& space);
 
 /// How scans of this log are best taken and matched: with points and match for ribs as uneven as the front end found them.
 OdometrySettings at_ribs(const OdometrySettings& settings, const Odometry& odometry);
