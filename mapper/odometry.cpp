@@ -68,7 +68,7 @@ class Drift {
 
 // What one step came to.
 struct Step {
-  Pose2 X_MB;
+  Pose2 X_MB, X_step;
   Mat3 information, jitter = Mat3::Zero();
   bool placed = false, degenerate = false, breaks = false;
   double known_share = 0, rib_sigma_m = 0;
@@ -91,9 +91,10 @@ class Tracker {
         scan_s_(fan_.scan_s()),
         nods_at_stands_(mount.tilt.nods() && mount.tilt.standing_only) {}
 
-  void begin() {
-    const ScanPoints points = points_of(0, {});
-    add_key({points, Pose2{}});
+  /// With scan i at a pose, moving as told.
+  void begin(size_t i, const Pose2& X_MB, const Twist2& twist) {
+    twist_ = twist;
+    add_key({points_of(i, twist), X_MB});
   }
 
   Step advance(size_t i, const Pose2& X_before, double dt_s) {
@@ -259,9 +260,48 @@ void weaken(const std::vector<double>& stamp_s, const std::vector<Weak>& weak,
   }
 }
 
+/// Scans that are matched one after the other, by one tracker.
+struct Run {
+  size_t warm, begin, end;  // from `warm` on its map grows; steps to the scans from `begin` on are its own
+};
+
+/// One run, or many that can be made at the same time where a first path tells how each begins. Their number is the log's,
+/// not the machine's.
+std::vector<Run> runs_of(size_t scans, const Odometry* first) {
+  constexpr size_t length = 600;
+  constexpr double warm_m = 8;  // as far as the local map reaches back
+  if (!first) return {{0, 1, scans}};
+  std::vector<Run> runs;
+  for (size_t begin = 1; begin < scans; begin += length) {
+    size_t warm = begin - 1;
+    for (double way_m = 0; warm > 0 && way_m < warm_m; --warm) way_m += first->X_step[warm].position().norm();
+    runs.push_back({warm, begin, std::min(begin + length, scans)});
+  }
+  return runs;
+}
+
+/// @param first  an earlier path of the same scans, or none
 Odometry track(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings, bool learns,
-               const std::vector<Stance>& stances, const Progress& progress) {
+               const std::vector<Stance>& stances, const Odometry* first, const Progress& progress) {
   const size_t n = scans.size();
+  std::vector<Step> steps(n);
+  const std::vector<Run> runs = runs_of(n, first);
+  parallel_for(runs.size(), [&](size_t r) {
+    const Run& run = runs[r];
+    Tracker tracker(scans, horizontal, settings, learns, stances);
+    Pose2 X = first ? first->X_MB[run.warm] : Pose2{};
+    const auto dt_s = [&](size_t i) { return scans.stamp_s[i] - scans.stamp_s[i - 1]; };
+    tracker.begin(run.warm, X, run.warm > 0 ? twist_of(first->X_step[run.warm], dt_s(run.warm)) : Twist2{});
+    for (size_t i = run.warm + 1; i < run.end; ++i) {
+      Step step = tracker.advance(i, X, dt_s(i));
+      step.points = {};
+      step.X_step = X.inverse() * step.X_MB;
+      X = X * step.X_step;
+      if (i >= run.begin) steps[i] = step;
+      if (r == 0 && (i % 50 == 0 || i + 1 == run.end))
+        progress("match scans", static_cast<double>(i + 1), static_cast<double>(run.end));
+    }
+  });
   Odometry out;
   out.stamp_s = scans.stamp_s;
   out.X_MB.assign(n, Pose2{});
@@ -270,11 +310,9 @@ Odometry track(const Scans& scans, const Mount& horizontal, const OdometrySettin
   out.jitter.assign(n, Mat3::Zero());
   std::vector<Weak> weak(n);
   std::vector<double> rib_sigma_m{settings.match.map_sigma_m};
-  Tracker tracker(scans, horizontal, settings, learns, stances);
-  tracker.begin();
   for (size_t i = 1; i < n; ++i) {
-    const Step step = tracker.advance(i, out.X_MB[i - 1], scans.stamp_s[i] - scans.stamp_s[i - 1]);
-    out.X_step[i] = out.X_MB[i - 1].inverse() * step.X_MB;
+    const Step& step = steps[i];
+    out.X_step[i] = step.X_step;
     out.X_MB[i] = out.X_MB[i - 1] * out.X_step[i];
     out.information[i] = settings.information_scale * step.information;
     out.jitter[i] = step.jitter;
@@ -282,7 +320,6 @@ Odometry track(const Scans& scans, const Mount& horizontal, const OdometrySettin
     out.lost += !step.placed;
     if (step.placed) rib_sigma_m.push_back(step.rib_sigma_m);
     if (step.breaks) out.breaks.push_back(i);
-    if (i % 50 == 0 || i + 1 == n) progress("match scans", static_cast<double>(i + 1), static_cast<double>(n));
   }
   const auto middle = rib_sigma_m.begin() + static_cast<std::ptrdiff_t>(rib_sigma_m.size() / 2);
   std::nth_element(rib_sigma_m.begin(), middle, rib_sigma_m.end());
@@ -341,19 +378,20 @@ OdometrySettings at_ribs(const OdometrySettings& settings, const Odometry& odome
 }
 
 Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings,
-                         const Progress& progress, const std::vector<Stance>& stances) {
+                         const Progress& progress, const std::vector<Stance>& stances, const Odometry* first) {
   const size_t n = scans.size();
   ADIT_CHECK(stances.empty() || stances.size() == n);
+  ADIT_CHECK(!first || first->X_MB.size() == n);
   if (n == 0) throw Error("laser '" + horizontal.name + "': no scan; a map needs at least one");
   for (size_t i = 1; i < n; ++i)
     if (!(scans.stamp_s[i] > scans.stamp_s[i - 1]))
       throw Error("laser '" + horizontal.name + "': scan " + std::to_string(i) + ": its stamp, " +
                   std::to_string(scans.stamp_s[i]) + " s, is not after that of the scan before; stamps must grow");
-  Odometry even = track(scans, horizontal, settings, false, stances, progress);
+  Odometry even = track(scans, horizontal, settings, false, stances, first, progress);
   if (even.rib_sigma_m <= settings.uneven_from * settings.match.map_sigma_m) return even;
   OdometrySettings patient = seeing_far(settings);
   patient.match.iterations *= 3;  // pairs flip to and fro between the layers of the map
-  Odometry uneven = track(scans, horizontal, patient, true, stances, progress);
+  Odometry uneven = track(scans, horizontal, patient, true, stances, first, progress);
   uneven.uneven = true;
   return uneven;
 }

@@ -78,7 +78,10 @@ OdometrySettings at_ribs(const OdometrySettings& settings, const Odometry& odome
 /// @param scans at least one, stamps that grow, else Error; a scan without a single rib point moves as predicted and
 /// counts as lost
 /// @param stances  of the laser at each scan, or none: with them scans are matched in space
+/// @param first  an earlier path of the same scans without breaks, or none: with it pieces of the log are matched in parallel, each
+/// begun some metres earlier on that path
 Odometry estimate_motion(const Scans& scans, const Mount& horizontal, const OdometrySettings& settings,
-                         const Progress& progress = {}, const std::vector<Stance>& stances = {});
+                         const Progress& progress = {}, const std::vector<Stance>& stances = {},
+                         const Odometry* first = nullptr);
 
 }  // namespace adit

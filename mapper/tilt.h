@@ -17,8 +17,8 @@ struct TiltSettings {
   double rest_knot_s = 2;      // and while it stands
   double node_m = 0.25;        // lattice of the floor's and the roof's heights
   double coarse = 2;           // times node_m: the lattice of all iterations but the last
-  double spacing_m = 0.15;     // beams of a scan are thinned to this distance on the rock
-  double forward_m = 6;        // use of the forward vertical laser, horizontally
+  double spacing_m = 0.25;     // beams of a scan are thinned to this distance on the rock
+  double forward_m = 10;       // use of the forward vertical laser, horizontally
   double sideways_m = 4;       // use of the upward and downward lasers, horizontally
   double sigma_m = 0.015;      // of a beam against the lattice: roughness between the nodes and noise
   double kernel = 2.5;         // width of the robust kernel in sigmas

@@ -25,7 +25,7 @@ ScanPoints ribs_seen_from(double x_m) {
       const double x = x_m + ahead_m, slope = (rib_m(x + 1e-4, side) - rib_m(x - 1e-4, side)) / 2e-4;
       s.p_B.emplace_back(ahead_m, side * rib_m(x, side));
       s.normal_B.push_back(Vec2(slope, -side).normalized());
-      s.sigma_m.push_back(0.005), s.sigma_normal_rad.push_back(0.005);
+      s.sigma_m.push_back(0.005), s.sigma_normal_rad.push_back(0.005), s.z_m.push_back(0);
       s.beam.push_back(static_cast<int>(s.beam.size()));
     }
   return s;
