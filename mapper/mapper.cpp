@@ -72,7 +72,7 @@ PlanarMap map_plan(const Log& log, int horizontal, Odometry odometry, const MapS
                    const Progress& progress) {
   if (settings.space.use && settings.method == "robust" && find_view(log.rig, View::forward_vertical) >= 0) {
     const std::vector<Stance> stances = stances_of(log, horizontal, odometry, settings, progress);
-    const OdometrySettings matched = in_space(settings.odometry, settings.space);
+    const OdometrySettings matched = in_space(settings.odometry, settings.space, odometry);
     Odometry again =
         estimate_motion(log.scans[horizontal], log.rig.mounts[horizontal], matched, progress, stances, &odometry);
     if (again.breaks.empty()) return map_plan(log, horizontal, std::move(again), matched, stances, settings, progress);

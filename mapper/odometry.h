@@ -62,8 +62,9 @@ struct SpaceSettings {
 };
 Fields fields(SpaceSettings& s);
 
-/// How a log is matched in space.
-OdometrySettings in_space(const OdometrySettings& settings, const SpaceSettings& space);
+/// How a log is matched in space. Where its first path found uneven ribs neighbouring scans err alike, whatever they look like
+/// once they are in space: nothing is steadier there than its scans.
+OdometrySettings in_space(const OdometrySettings& settings, const SpaceSettings& space, const Odometry& first);
 
 /// How scans of this log are best taken and matched: with points and match for ribs as uneven as the front end found them.
 OdometrySettings at_ribs(const OdometrySettings& settings, const Odometry& odometry);

@@ -77,6 +77,14 @@ TEST(Odometry, RibsThatLeanAreFoundUnevenAndAreMatchedAllTheSame) {
   EXPECT_LT(end_error_m(log, o), 0.02 * driven_m(log));
 }
 
+TEST(Odometry, InSpaceOnlyRibsThatWereEvenAreSteadierThanTheirScans) {
+  Odometry even, uneven;
+  uneven.uneven = true;
+  EXPECT_EQ(in_space({}, {}, even).steadiness, SpaceSettings{}.steadiness);
+  EXPECT_EQ(in_space({}, {}, uneven).steadiness, 1);
+  EXPECT_EQ(in_space({}, {}, even).points.range_max_m, SpaceSettings{}.range_max_m);
+}
+
 TEST(Odometry, RoughRibsAreEven) {
   const PlanLog log = straight_and_round(0.05, 100);
   const Odometry o = estimate_motion(log.scans, log.mount, {});
