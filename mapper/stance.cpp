@@ -3,6 +3,8 @@
 
 #include "base/parallel.h"
 
+#include <algorithm>
+
 namespace adit {
 namespace {
 
@@ -21,6 +23,8 @@ Standing standing(const Pose& X_MB, const Mount& horizontal) {
 
 std::vector<Stance> stances_along(const Trajectory& X_MB, const std::vector<double>& stamp_s, const Mount& horizontal,
                                   double scan_s) {
+  constexpr double least_s = 0.005;  // a laser whose beams all leave at once moves all the same
+  scan_s = std::max(scan_s, least_s);
   std::vector<Stance> out(stamp_s.size());
   parallel_for(
       stamp_s.size(),

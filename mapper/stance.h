@@ -18,7 +18,7 @@ struct Stance {
   double z_m = 0, z_m_s = 0;                           // height of the laser in M, and its change per second
 };
 
-/// At each stamp, by a path with pitch, roll and height. @param scan_s  over which the changes are taken, > 0
+/// At each stamp, by a path with pitch, roll and height. @param scan_s  over which the changes are taken; 0 for a laser whose beams leave at once
 std::vector<Stance> stances_along(const Trajectory& X_MB, const std::vector<double>& stamp_s, const Mount& horizontal,
                                   double scan_s);
 

@@ -64,6 +64,7 @@ TEST(Stance, ALevelLaserSeesWhatOneWithoutAStanceSees) {
     EXPECT_EQ(plain.z_m[i], 0);
     EXPECT_NEAR(lifted.z_m[i], mount.X_BS.translation().z(), 1e-12);
   }
+  EXPECT_EQ(stances_along(standing(Pose::Identity()), {0.5}, mount, 0)[0].z_m_s, 0);
 }
 
 // A rib along x that leans away from the void by 0.3 m a metre of height, seen at two heights.
