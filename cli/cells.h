@@ -35,8 +35,8 @@ struct CellsRun {
 };
 
 /// Makes the cells that are not there yet. Cells of one mine, one drive, one recording or one map make it once, as
-/// they do what judges the maps of one recording, and hold it no longer than one of them needs it. Cells run side by side, each loop within them shares the same threads; another one
-/// begins only while memory is left for it. A cell that fails (drive ended early, mapper failed, bad settings) is kept
+/// they do what judges the maps of one recording, and hold it no longer than one of them needs it. Cells run side by
+/// side, each loop within them shares the same threads; another one begins only while memory is left for it. A cell that fails (drive ended early, mapper failed, bad settings) is kept
 /// with its reason; it never ends the others. The same bytes in any order, on any number of threads, after any number of kills, and
 /// where several processes make the same cell.
 /// @throws Error (file) where a cell cannot be written: those written before stay

@@ -38,8 +38,9 @@ struct PlanarMap {
   std::vector<Pose2> X_MB;
 };
 
-PlanarMap map_plan(const Log& log, int horizontal, Odometry odometry, const OdometrySettings& matched,
-                   const std::vector<Stance>& stances, const MapSettings& settings, const Progress& progress) {
+/// From scans that were matched once and for all. @param matched  with which settings; @param stances  in space, or none
+PlanarMap align_matched(const Log& log, int horizontal, Odometry odometry, const OdometrySettings& matched,
+                        const std::vector<Stance>& stances, const MapSettings& settings, const Progress& progress) {
   const OdometrySettings found = at_ribs(matched, odometry);
   const std::vector<ScanPoints> points =
       scan_points(log.scans[horizontal], log.rig.mounts[horizontal], odometry.X_MB, found.points, stances);
@@ -75,9 +76,10 @@ PlanarMap map_plan(const Log& log, int horizontal, Odometry odometry, const MapS
     const OdometrySettings matched = in_space(settings.odometry, settings.space, odometry);
     Odometry again =
         estimate_motion(log.scans[horizontal], log.rig.mounts[horizontal], matched, progress, stances, &odometry);
-    if (again.breaks.empty()) return map_plan(log, horizontal, std::move(again), matched, stances, settings, progress);
+    if (again.breaks.empty())
+      return align_matched(log, horizontal, std::move(again), matched, stances, settings, progress);
   }
-  return map_plan(log, horizontal, std::move(odometry), settings.odometry, {}, settings, progress);
+  return align_matched(log, horizontal, std::move(odometry), settings.odometry, {}, settings, progress);
 }
 
 /// What the path in the plane tells.

@@ -34,8 +34,8 @@ struct MapSettings {
 };
 Fields fields(MapSettings& settings);
 
-/// A map from what the lasers saw and nothing else: scan matching, global alignment, a second matching with the aligned
-/// poses as prior, occupancy grid; then height, pitch and roll, points, surface and volume from the vertical lasers.
+/// A map from what the lasers saw and nothing else: scan matching, global alignment, both once more in space where the
+/// rig tells height, pitch and roll, a second matching with the aligned poses as prior, occupancy grid; then height, pitch and roll, points, surface and volume from the vertical lasers.
 /// What the rig cannot see is left out and noted. Deterministic on any number of threads.
 /// Errors: no horizontal laser in the rig; no scans of it.
 Estimate make_map(const Log& log, const MapSettings& settings, const Progress& progress = {});

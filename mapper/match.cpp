@@ -114,7 +114,8 @@ double fine_score(const ScanPoints& scan, const LocalMap& map, const Pose2& X) {
   for (size_t k = 0; k < scan.size(); ++k) {
     const Vec2& m = scan.normal_B[k];
     const Vec2 q = X * scan.p_B[k];
-    const std::optional<LocalMap::Rib> rib = map.rib_near(q, scan.z_m[k], Vec2(c * m.x() - s * m.y(), s * m.x() + c * m.y()), 0.4);
+    const std::optional<LocalMap::Rib> rib =
+        map.rib_near(q, scan.z_m[k], Vec2(c * m.x() - s * m.y(), s * m.x() + c * m.y()), 0.4);
     if (!rib) continue;
     const double r = rib->distance_m / 0.1;
     sum += std::exp(-r * r / 2);
@@ -272,8 +273,8 @@ double uneven_m(const ScanPoints& scan, const LocalMap& map, const Pose2& X_AB, 
   std::vector<double> off2;
   for (size_t k = 0; k < scan.size(); k += 2) {
     const Vec2& m = scan.normal_B[k];
-    const auto rib =
-        map.rib_near(X_AB * scan.p_B[k], scan.z_m[k], Vec2(c * m.x() - sn * m.y(), sn * m.x() + c * m.y()), reach_m, blend_m);
+    const auto rib = map.rib_near(X_AB * scan.p_B[k], scan.z_m[k], Vec2(c * m.x() - sn * m.y(), sn * m.x() + c * m.y()),
+                                  reach_m, blend_m);
     if (rib) off2.push_back(rib->distance_m * rib->distance_m - scan.sigma_m[k] * scan.sigma_m[k]);
   }
   if (off2.empty()) return 0;

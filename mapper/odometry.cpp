@@ -366,7 +366,8 @@ Fields fields(SpaceSettings& s) {
 OdometrySettings in_space(const OdometrySettings& settings, const SpaceSettings& space, const Odometry& first) {
   OdometrySettings out = settings;
   out.points.range_max_m = std::max(settings.points.range_max_m, space.range_max_m);
-  out.key_step_m = space.key_step_m, out.key_scans = space.key_scans,
+  out.key_step_m = space.key_step_m;
+  out.key_scans = space.key_scans;
   out.steadiness = first.uneven ? 1 : space.steadiness;
   return out;
 }

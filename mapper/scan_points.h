@@ -56,7 +56,7 @@ struct BeamFan {
   double step_rad = 0;            // between neighbours
   double sigma_m = 0;             // of one range, 1 sd
 
-  double scan_s() const { return *std::max_element(offset_s.begin(), offset_s.end()); }
+  double scan_s() const { return offset_s.empty() ? 0 : *std::max_element(offset_s.begin(), offset_s.end()); }
 };
 BeamFan fan_of(const Mount& mount);
 

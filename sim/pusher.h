@@ -20,7 +20,8 @@ struct Intent {
 };
 
 /// When and how fast a person walks: a speed that varies slowly, its ripple with each step, swaying, stops; where the way on
-/// lies behind, stopping and swinging the vehicle round about its axle. All of it is a function of the seed, of time and of where on the route the vehicle is.
+/// lies behind, stopping and swinging the vehicle round about its axle. All of it is a function of the seed, of time and of
+/// where on the route the vehicle is.
 class Pusher {
  public:
   Pusher(const DriveSettings& settings, std::uint64_t seed, double length_m);
